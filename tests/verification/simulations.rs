@@ -3,11 +3,11 @@
 
 use searoom::scenario::Scenario;
 use searoom::simulation::Simulation;
-use searoom::verification::verify_simulations;
+use searoom::verification::{verify, verify_simulations};
 use serde_json::{Value, json};
 
 use crate::alter::{alter, list, rows};
-use crate::documents::{fault, parsed, scenario};
+use crate::documents::{document, fault, parsed, scenario};
 
 /// The document of a scenario that is sailed to its end, which verifies.
 fn sailed(scenario: Scenario) -> Value {
@@ -162,4 +162,23 @@ fn statements_that_the_document_contradicts_are_found() {
     let edits =
         r#"far from its end | /to_go_m = 1e4; /arrived = true | arrived: the document says true"#;
     assert_rejected(&forces, edits);
+}
+
+/// The rest of the mission after the end of a plan is a length, and nothing with a stay.
+#[test]
+fn a_plan_leaves_out_a_length_of_its_mission() {
+    let mut plan = document(scenario("colregs/head-on.toml"));
+    let refused = |plan: &Value| {
+        verify(&plan.to_string())
+            .err()
+            .map(|error| error.to_string())
+    };
+    plan["mission"]["left_out_m"] = json!(5.0);
+    assert_eq!(refused(&plan), None);
+    plan["mission"]["stay_until_s"] = json!(900.0);
+    let found = refused(&plan).expect("a stay at an intermediate end");
+    assert!(found.contains("mission.left_out_m: found 5"), "{found}");
+    plan["mission"]["left_out_m"] = json!(-1.0);
+    let found = refused(&plan).expect("less than nothing");
+    assert!(found.contains("mission.left_out_m: found -1"), "{found}");
 }
