@@ -266,7 +266,7 @@ impl Folder {
         let allowed = format!(
             "the document of the row; `campaign replay --row {number} --json FILE` writes it again"
         );
-        Some(Fault::new(&file.display().to_string(), found, &allowed))
+        Some(Fault::new(file.display().to_string(), found, &allowed))
     }
 
     /// A row as it is kept in a part, if one has it, whatever the part's name.

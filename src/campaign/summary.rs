@@ -124,7 +124,7 @@ pub(super) fn misplaced(parts: &[(PathBuf, Header)]) -> Vec<Fault> {
         let is_renamed = |(file, header): &&(PathBuf, Header)| !file.ends_with(header.file_name());
         faults.extend(parts.iter().filter(is_renamed).map(|(file, header)| {
             let found = format!("{} in {}", named(&header.rows), file.display());
-            Fault::new("", found, &header.file_name())
+            Fault::new("", found, header.file_name())
         }));
     }
     faults

@@ -147,7 +147,7 @@ an alarm for nobody | /alarms = [{"t_s": 20, "alarm": "stale", "target": "nobody
 an alarm without a cause | /alarms = [{"t_s": 20, "alarm": "no plan", "target": null}] | alarms, length
 an alarm between steps | /alarms = [{"t_s": 20.3, "alarm": "stale", "target": "target"}] | between two steps
 fewer times of planning | /timing/plan_s/last remove | other times of planning than plans
-asked for by an alarm | /replans/1/reason = "beyond the tracking margin" | replans[1].reason
+asked for by an alarm | /settings/replan_on_events = true; /replans/1/reason = "beyond the tracking margin" | replans[1].reason
 asked for by a velocity | /settings/replan_on_events = true; /replans/1/reason = "another velocity: target" | replans[1].reason
 asked for by a target | /settings/replan_on_events = true; /replans/1/reason = "acquired: target" | replans[1].reason
 "#;
@@ -175,7 +175,7 @@ fn a_plan_leaves_out_a_length_of_its_mission() {
     };
     plan["mission"]["left_out_m"] = json!(5.0);
     assert_eq!(refused(&plan), None);
-    plan["mission"]["stay_until_s"] = json!(900.0);
+    plan["mission"]["stay_until_s"] = plan["horizon_s"].clone();
     let found = refused(&plan).expect("a stay at an intermediate end");
     assert!(found.contains("mission.left_out_m: found 5"), "{found}");
     plan["mission"]["left_out_m"] = json!(-1.0);
