@@ -486,8 +486,8 @@ fn alarms_of(replan: &ReplanDocument) -> Vec<PlanAlarm> {
     all.map(alarm).collect()
 }
 
-/// Plans when which a target is outside the sets of the one before, or at whose start it is outside
-/// theirs.
+/// Number of plans that find a target outside the sets of the plan before, and of alarms that it is
+/// outside those of a plan which begins.
 fn outside_sets(document: &SimulationDocument, name: &String) -> usize {
     let is_outside = |p: &&ReplanDocument| {
         p.outside_velocities.contains(name) || p.outside_places.contains(name)
