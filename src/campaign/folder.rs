@@ -1,6 +1,7 @@
 //! The folder of a campaign: its index, its parts, and which rows are there.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -8,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::part::{Header, Part, PartError};
-use super::row::Cell;
+use super::row::{Cell, column, document_digest, is_kept};
 use super::specification::{Specification, StratumClass, hex};
 use crate::input::{Fault, InputError, read_text};
 use crate::output::{WriteError, write_atomically};
@@ -242,10 +243,43 @@ impl Folder {
         self.path.join("parts")
     }
 
-    /// A row as it is kept in a part, if one has it.
+    /// What is wrong with the document of a row: it is not there although it was kept, or it is
+    /// another one than was sailed, apart from its timing.
+    pub fn document_fault(&self, row: &[Cell]) -> Option<Fault> {
+        let Cell::Count(Some(number)) = row[0] else {
+            return None;
+        };
+        let file = self.row_file(number.try_into().ok()?);
+        let found = match fs::read(&file) {
+            Err(error) if error.kind() != ErrorKind::NotFound => error.to_string(),
+            Err(_) if !is_kept(row) => return None,
+            Err(_) => "nothing".to_owned(),
+            Ok(text) => {
+                let document = serde_json::from_slice(&text).ok();
+                let digest = document.and_then(|document| document_digest(&document));
+                if row[column("document")] == Cell::Word(digest) {
+                    return None;
+                }
+                "another document".to_owned()
+            }
+        };
+        let allowed = format!(
+            "the document of the row; `campaign replay --row {number} --json FILE` writes it again"
+        );
+        Some(Fault::new(file.display().to_string(), found, &allowed))
+    }
+
+    /// A row as it is kept in a part, if one has it, whatever the part's name.
     pub fn row(&self, row: u64) -> Result<Option<Vec<Cell>>, CampaignError> {
+        match self.row_in(row, Some(row))? {
+            None => self.row_in(row, None),
+            kept => Ok(kept),
+        }
+    }
+
+    fn row_in(&self, row: u64, with: Option<u64>) -> Result<Option<Vec<Cell>>, CampaignError> {
         let mut kept = None;
-        self.each_part(Some(row), |part| {
+        self.each_part(with, |part| {
             let index = row.checked_sub(part.header.rows.start);
             let index = index.and_then(|index| usize::try_from(index).ok());
             kept = kept

@@ -1,9 +1,12 @@
 //! The rows of a campaign: what is kept of each simulation, column by column.
 
-use super::specification::{RowScenario, Specification, Stratum};
+use sha2::{Digest, Sha256};
+
+use super::specification::{RowScenario, Specification, Stratum, hex};
 use crate::colregs::compliance::MonitorVerdict;
 use crate::document::{
-    PlanOutcome, ReplanDocument, SailedDocument, SimulatedTargetDocument, SimulationDocument,
+    CycleTimingDocument, PlanOutcome, ReplanDocument, SailedDocument, SimulatedTargetDocument,
+    SimulationDocument,
 };
 use crate::frame::{Vector, clockwise_deg, deg_from_radians, relative_bearing};
 use crate::scenario::Scenario;
@@ -57,7 +60,7 @@ pub(super) const FAULT: &str = "fault";
 pub const TIMED: usize = 4;
 
 /// All columns, in their order in files.
-pub const COLUMNS: [Column; 58] = [
+pub const COLUMNS: [Column; 59] = [
     Column::count("row", |s| Some(s.row as usize)),
     Column::word("stratum", |s| Some(s.stratum.name.clone())),
     Column::word("class", |s| Some(s.stratum.class.to_string())),
@@ -155,6 +158,7 @@ pub const COLUMNS: [Column; 58] = [
         Some(s.conduct()?.within_tracking_margin)
     }),
     Column::count("alarms", |s| Some(s.document?.alarms.len())),
+    Column::word("document", |s| document_digest(s.document?)),
     // of the machine
     Column::count("late", |s| Some(late_plans(s.document?))),
     Column::number("plan_ms_median", |s| {
@@ -172,6 +176,33 @@ fn late_plans(document: &SimulationDocument) -> usize {
     // the first plan is made before the start
     let plans = document.timing.plan_s.iter().skip(1);
     plans.filter(|seconds| **seconds > delay).count()
+}
+
+/// SHA-256 of a document without its timing, which depends on the machine.
+pub(super) fn document_digest(document: &SimulationDocument) -> Option<String> {
+    let timing = CycleTimingDocument::default();
+    let untimed = SimulationDocument {
+        timing,
+        ..document.clone()
+    };
+    let mut hash = Sha256::new();
+    hash.update(serde_json::to_vec(&untimed).ok()?);
+    Some(hex(hash))
+}
+
+/// True where a column of a row is true or above zero.
+pub(super) fn happened(row: &[Cell], name: &str) -> bool {
+    match row[column(name)] {
+        Cell::Count(Some(count)) => count > 0,
+        Cell::Truth(Some(truth)) => truth,
+        _ => false,
+    }
+}
+
+/// True for a row whose document is kept, because somebody has to look at it.
+pub(super) fn is_kept(row: &[Cell]) -> bool {
+    let events = ["contact", "no_plan", "unsafe_plans", "late", "broken"];
+    events.iter().any(|name| happened(row, name))
 }
 
 /// The index of a column that is in [`COLUMNS`].
@@ -336,15 +367,9 @@ impl Row {
             document: document.as_ref(),
             cpu_s,
         };
-        Self {
-            cells: COLUMNS.iter().map(|column| column.cell(&sailed)).collect(),
-            document: document.map(Box::new).filter(|document| {
-                let conduct = &document.conduct;
-                let without_safe_plan = conduct.without_plan + conduct.unsafe_plans > 0;
-                let is_late = late_plans(document) > 0;
-                document.contact || without_safe_plan || is_late || !conduct.breaks.is_empty()
-            }),
-        }
+        let cells: Vec<Cell> = COLUMNS.iter().map(|column| column.cell(&sailed)).collect();
+        let document = document.filter(|_| is_kept(&cells)).map(Box::new);
+        Self { cells, document }
     }
 }
 

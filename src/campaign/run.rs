@@ -10,7 +10,7 @@ use super::folder::{CampaignError, Folder, Found, missing};
 use super::part::{Header, Part};
 use super::row::{Cell, FAULT, Row, column};
 use super::specification::Specification;
-use super::summary::stored_twice;
+use super::summary::misplaced;
 use crate::document::{SimulationDocument, json};
 use crate::input::InputError;
 use crate::output::{WriteError, write_atomically};
@@ -105,9 +105,9 @@ pub fn run(
         }
     }
     parts.sort_by_key(|(_, header)| header.rows.start);
-    let twice = stored_twice(&parts);
-    if !twice.is_empty() {
-        return Err(InputError::faults(&folder.parts(), twice).into());
+    let misplaced = misplaced(&parts);
+    if !misplaced.is_empty() {
+        return Err(InputError::faults(&folder.parts(), misplaced).into());
     }
     let all = shard.rows(specification.rows);
     let there = parts.into_iter().map(|(_, header)| header.rows);

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use super::bounds::{anytime, clopper_pearson};
 use super::folder::{CampaignError, Folder, Found, missing};
 use super::part::{Header, Part, join};
-use super::row::{Cell, FAULT, column};
+use super::row::{Cell, FAULT, column, happened};
 use super::run::word;
 use super::specification::StratumClass;
 use crate::document::{
@@ -65,15 +65,22 @@ fn named(rows: &Range<u64>) -> String {
 }
 
 /// The parts in the order of their rows, each of which is given to `take`; an error where one is
-/// damaged or foreign, or has a row that another one has.
+/// damaged, foreign or renamed, or has a row that another one has, or whose document was altered.
 fn sound(
     folder: &Folder,
     other_builds: bool,
-    take: impl FnMut(&Part),
+    mut take: impl FnMut(&Part),
 ) -> Result<Vec<(PathBuf, Header)>, CampaignError> {
-    let found = folder.each_part(None, take)?;
-    folder.refuse_foreign(&found, other_builds)?;
     let mut faults = Vec::new();
+    let found = folder.each_part(None, |part| {
+        faults.extend(
+            part.rows
+                .iter()
+                .filter_map(|row| folder.document_fault(row)),
+        );
+        take(part);
+    })?;
+    folder.refuse_foreign(&found, other_builds)?;
     let mut parts = Vec::new();
     for Found { file, header } in found {
         match header {
@@ -85,15 +92,16 @@ fn sound(
         }
     }
     parts.sort_by_key(|(_, header)| header.rows.start);
-    faults.extend(stored_twice(&parts));
+    faults.extend(misplaced(&parts));
     if faults.is_empty() {
         return Ok(parts);
     }
     Err(InputError::faults(&folder.parts(), faults).into())
 }
 
-/// Rows that two parts have, of parts in the order of their rows.
-pub(super) fn stored_twice(parts: &[(PathBuf, Header)]) -> Vec<Fault> {
+/// Rows that two parts have, of parts in the order of their rows, or else the parts whose names are
+/// not those of their rows: a run could write another part over one.
+pub(super) fn misplaced(parts: &[(PathBuf, Header)]) -> Vec<Fault> {
     let mut faults = Vec::new();
     // the part of all before that reaches farthest
     let mut last: Option<&(PathBuf, Header)> = None;
@@ -111,6 +119,13 @@ pub(super) fn stored_twice(parts: &[(PathBuf, Header)]) -> Vec<Fault> {
         if last.is_none_or(|(_, before)| rows.end > before.rows.end) {
             last = Some(part);
         }
+    }
+    if faults.is_empty() {
+        let is_renamed = |(file, header): &&(PathBuf, Header)| !file.ends_with(header.file_name());
+        faults.extend(parts.iter().filter(is_renamed).map(|(file, header)| {
+            let found = format!("{} in {}", named(&header.rows), file.display());
+            Fault::new("", found, header.file_name())
+        }));
     }
     faults
 }
@@ -153,13 +168,8 @@ impl Tally {
             return;
         }
         self.rows += 1;
-        let happened = |name: &&str| match cell(name) {
-            Cell::Count(Some(count)) => *count > 0,
-            Cell::Truth(Some(truth)) => *truth,
-            _ => false,
-        };
         for (count, names) in self.events.iter_mut().zip(EVENTS) {
-            *count += u64::from(names.iter().any(happened));
+            *count += u64::from(names.iter().any(|name| happened(row, name)));
         }
         for name in broken(row) {
             *self.breaks.entry(name.to_owned()).or_default() += 1;

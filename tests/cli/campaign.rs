@@ -445,6 +445,52 @@ fn the_summary_of_the_guide_is_what_the_program_prints() {
     }
 }
 
+/// A document that was altered or deleted, until `replay` writes it again, and a part with the name
+/// of other rows.
+#[test]
+fn altered_documents_and_renamed_parts_are_refused() {
+    let folder = folder();
+    folder.write(
+        "spec.toml",
+        SPECIFICATION.replace("factor = 1.5", "factor = 8"),
+    );
+    sail(&folder, "out", 1, 2);
+    let name = folder.names("out/rows").remove(0);
+    let row = name.trim_matches(|c: char| !c.is_ascii_digit());
+    let row: u64 = row.parse().expect("a number");
+    let file = folder.path().join("out/rows").join(&name);
+    let refused = |what: &str| {
+        for command in ["merge", "summarise"] {
+            let refused = run(&format!("campaign {command} {folder}/out")).code(2);
+            says(&stderr(&refused), what);
+        }
+    };
+    let replay = format!("campaign replay {folder}/out --row {row}");
+    let kept = fs::read_to_string(&file).expect("a document");
+    let mut altered: serde_json::Value = serde_json::from_str(&kept).expect("JSON");
+    altered["conduct"]["cost_m2"] = 1.0.into();
+    fs::write(&file, altered.to_string()).expect("written");
+    refused("found another document | writes it again");
+    says(&stderr(&run(&replay).code(3)), "found another document");
+    fs::remove_file(&file).expect("removed");
+    refused("found nothing | writes it again");
+    run(&format!("{replay} --json {}", file.display()));
+    run(&format!("campaign merge {folder}/out")).success();
+    let parts = folder.path().join("out/parts");
+    let part = &folder.names("out/parts")[0];
+    let renamed = parts.join("rows-0000000100-0000000139.parquet");
+    fs::rename(parts.join(part), renamed).expect("renamed");
+    refused(&format!(
+        "rows 0 to 39 in | rows-0000000100 | allowed: {part}"
+    ));
+    run(&format!(
+        "campaign run {folder}/spec.toml --out {folder}/out"
+    ))
+    .code(2);
+    let as_it_was = format!("row {row} is as it was in the campaign");
+    says(&stderr(&run(&replay)), &as_it_was);
+}
+
 /// Rows that somebody has to look at leave their documents.
 #[test]
 fn documents_of_rows_with_a_fault_are_kept() {

@@ -11,4 +11,5 @@ mod motion;
 mod out_of_reach;
 mod risk;
 mod safety;
+mod simulations;
 mod unsound;

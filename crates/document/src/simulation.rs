@@ -131,6 +131,9 @@ impl ReplanDocument {
     /// Events of a target, whose name follows after a colon.
     pub const ANOTHER_VELOCITY: &str = "another velocity";
     pub const ACQUIRED: &str = "acquired";
+
+    /// Seconds before the end of a plan that ends short at which another one takes effect at the latest.
+    pub const BEFORE_END_S: f64 = 2.0;
 }
 
 impl SimulatedTargetDocument {
@@ -342,6 +345,9 @@ pub struct ReplanDocument {
     /// Time of the data, and from which the plan holds.
     pub t_s: f64,
     pub start_t_s: f64,
+    /// Time at which the plan ends; null without one.
+    #[serde(default)]
+    pub end_s: Option<f64>,
     /// Why it was made then, with the target of an event.
     pub reason: String,
     pub verdict: String,
@@ -385,7 +391,7 @@ pub struct EstimateDocument {
 }
 
 /// Wall clock, the only values that differ between two runs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CycleTimingDocument {
     pub plan_s: Vec<f64>,
 }

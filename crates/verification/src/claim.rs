@@ -113,6 +113,11 @@ impl<'a> Claim<'a> {
         not_negative("time_weight_m2_per_s2", file.time_weight_m2_per_s2)?;
         let own = own_ship(&file.own_ship)?;
         let mission = &file.mission;
+        not_negative("mission.left_out_m", mission.left_out_m)?;
+        if mission.left_out_m > 0.0 && mission.stay_until_s.is_some() {
+            let allowed = "0 with stay_until_s: own ship stays at the last waypoint alone";
+            return Err(fault("mission.left_out_m", mission.left_out_m, allowed));
+        }
         let points = |path: &[PositionDocument]| path.iter().map(PositionDocument::point).collect();
         let waypoints: Vec<Vector> = points(&mission.waypoints);
         let speeds = mission.leg_speeds_mps.len();

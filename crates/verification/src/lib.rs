@@ -9,6 +9,7 @@ mod geometry_fixtures;
 mod claim;
 mod comparison;
 mod coverage;
+mod cycles;
 mod document;
 mod figures;
 mod motion;

@@ -1,16 +1,19 @@
 //! Checks a simulation document alone: contacts and least distances from the motions in it.
 
+use std::collections::BTreeSet;
+
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use super::claim::{ClaimError, fault};
 use super::comparison::{Rounding, differences};
+use super::cycles::{Cycles, TIME_S, arrives};
 use super::mismatch;
 use super::outcome::outcomes;
 use searoom_document::{
-    Alarm, GroundSegmentDocument, RelaxationKind, ReplanDocument, SIMULATION_FORMAT,
-    SailedDocument, SailedLandDocument, SimulatedTargetDocument, SimulationDocument,
-    SimulationsDocument, StateDocument, VerifiedOutcome,
+    Alarm, AlarmDocument, GroundSegmentDocument, ManoeuvreDocument, RelaxationKind, ReplanDocument,
+    SIMULATION_FORMAT, SailedDocument, SailedLandDocument, SimulatedTargetDocument,
+    SimulationDocument, SimulationsDocument, StateDocument, VerifiedOutcome, conduct_breaks,
 };
 use searoom_evaluation::{
     Body, MovingSlabs, Safety, Violation, least_land_distance, outcome_word, said_risk,
@@ -18,6 +21,7 @@ use searoom_evaluation::{
 };
 use searoom_geometry::frame::{Pose, Vector, deg_from_radians, wrap};
 use searoom_geometry::{ConvexPolygon, Polygon};
+use searoom_model::SailedVessel;
 use searoom_model::target::Uncertainty;
 use searoom_model::trajectory::GroundSegment;
 use searoom_model::vessel::Hull;
@@ -33,9 +37,6 @@ const TURNED_RAD: f64 = 1e-6;
 
 /// Degrees: the largest angle of an estimate.
 const HALF_TURN_DEG: f64 = 180.0;
-
-/// Seconds: a later time of the same distance.
-const TIME_S: f64 = 1e-6;
 
 /// Result of the check of a simulation document.
 #[derive(Debug, Clone, PartialEq)]
@@ -156,7 +157,9 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
     if !(covered <= TIME_S * (1.0 + document.duration_s)) {
         violations.push(mismatch("sailed", "the whole duration", "another time"));
     }
-    violations.extend(contradictions(document));
+    let cycles = Cycles::of(document);
+    violations.extend(cycles.check());
+    violations.extend(contradictions(document, &cycles));
     violations.extend(impossible_numbers(document));
     let own = Hull::new(document.settings.own_length_m, document.settings.own_beam_m);
     let (mut contact, mut least_clearance) = (false, f64::INFINITY);
@@ -240,15 +243,24 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
     let conduct = conduct_of(document);
     let within = conduct.within_tracking_margin && document.conduct.within_tracking_margin;
     let safe = !contact && within && document.replans.iter().all(is_safe);
+    let targets = document.targets.iter();
     let claimed = Results {
         safe: document.safe,
         contact: document.contact,
+        arrived: document.arrived,
         conduct: document.conduct.clone(),
+        alarms: document.alarms.iter().filter_map(PlanAlarm::of).collect(),
+        outside_sets: targets.clone().map(|target| target.outside_sets).collect(),
     };
     let proven = Results {
         safe,
         contact,
+        arrived: arrived(document, &cycles, within),
         conduct,
+        alarms: document.replans.iter().flat_map(alarms_of).collect(),
+        outside_sets: targets
+            .map(|target| outside_sets(document, &target.name))
+            .collect(),
     };
     violations.extend(differences(&claimed, &proven, &Rounding::new()));
     violations.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -262,7 +274,7 @@ fn verified(document: &SimulationDocument) -> SimulationVerification {
 }
 
 /// Statements of a document that contradict one another.
-fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
+fn contradictions(document: &SimulationDocument, cycles: &Cycles) -> Vec<Violation> {
     let mut found = Vec::new();
     let mut require = |holds: bool, what: &str, time: f64| {
         if !holds {
@@ -313,65 +325,99 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
             end,
         );
     }
-    let mut last = 0.0;
+    let alarms = document.alarms.iter();
+    let mut names = alarms.filter_map(|alarm| alarm.target.as_ref());
+    let plans = document.replans.iter();
+    let mut outside = plans.flat_map(|p| p.outside_velocities.iter().chain(&p.outside_places));
+    let is_target = |name: &String| document.targets.iter().any(|t| t.name == *name);
+    require(
+        end == 0.0 || names.all(is_target) && outside.all(is_target),
+        "a plan or an alarm that names no target",
+        0.0,
+    );
     for (index, replan) in document.replans.iter().enumerate() {
-        let due = last + settings.replan_s + settings.step_s;
-        require(
-            replan.t_s >= last && replan.t_s <= due.min(end) + TIME_S * (1.0 + end),
-            "a plan at another time",
-            replan.t_s,
-        );
-        last = replan.t_s;
+        let time = replan.t_s;
         let left_out = replan.left_out_m;
         require(
             left_out >= 0.0 && left_out.is_finite(),
             "a plan that leaves out no length",
-            last,
+            time,
         );
         require(
             has_its_verdict(replan),
             "a plan with a verdict that does not fit what it gives up and whether it is safe",
-            last,
+            time,
         );
         let reasons = match index {
             0 => vec![ReplanDocument::START.to_owned()],
-            _ => reasons(document, last),
+            _ => reasons(document, index),
         };
+        // the distance is that from a plan which has just taken effect
+        let begins = |p: &ReplanDocument| p.followed && cycles.is_same(p.start_t_s, time);
+        let begins = document.replans[..index].iter().any(begins);
+        require(
+            begins || replan.off_plan_m <= document.conduct.largest_off_plan_m,
+            "a plan when own ship is farther off its plan than ever",
+            time,
+        );
         let what = format!(
             "replans[{index}].reason: found '{}'; allowed: {}",
             replan.reason,
             reasons.join(", ")
         );
-        require(reasons.contains(&replan.reason), &what, last);
+        require(reasons.contains(&replan.reason), &what, time);
         // a plan knows of the targets that own ship has seen
-        let known = || known(document, last);
+        let known = || known(document, time);
         let planned = replan.estimates.iter().map(|e| e.target.as_str());
         let of_others = !planned.eq(known().map(|t| t.name.as_str())) && end > 0.0;
-        require(!of_others, "a plan for other targets", last);
-        let starts = last..=last + settings.delay_s + TIME_S * (1.0 + end);
-        require(
-            starts.contains(&replan.start_t_s),
-            "a plan that begins at another time",
-            last,
-        );
+        require(!of_others, "a plan for other targets", time);
         let mut seen = replan.estimates.iter().zip(known());
         require(
             seen.all(|(seen, target)| {
-                let there = target.at(last).map(|ship| ship.pose.position);
+                let there = target.at(time).map(|ship| ship.pose.position);
                 let off = there.map(|there| (there - seen.true_position.point()).norm());
                 off.is_some_and(|off| off <= DISTANCE_M)
             }),
             "a target that a plan has off its track",
-            last,
+            time,
         );
     }
-    // the last plan ends within one period, or another would have been due
-    let due = last + settings.replan_s + settings.delay_s + settings.step_s;
-    let is_complete = !document.replans.is_empty() && end <= due + TIME_S * (1.0 + end);
-    require(is_complete, "plans are missing", end);
-    let first = document.replans.first();
-    let from_start = first.is_some_and(|first| first.t_s == 0.0);
-    require(from_start, "the first plan is missing", 0.0);
+    let conduct = &document.conduct;
+    let plans = document.replans.len();
+    let turns = document.replans.iter().filter(|p| p.turn_deg.is_some());
+    require(
+        conduct.lost_remainders.max(conduct.replaced_manoeuvres) <= plans
+            && conduct.side_switches <= conduct.replaced_manoeuvres.min(turns.count()),
+        "more plans with another manoeuvre, to the other side or without a remainder than there are",
+        0.0,
+    );
+    let sailed = conduct.manoeuvres.iter();
+    let times = sailed.flat_map(|m| [Some(m.departure.begins_s()), m.returns_s]);
+    let mut times = times.flatten().chain([conduct.largest_off_plan_t_s]);
+    require(
+        times.all(within),
+        "a time of the conduct outside the simulation",
+        end,
+    );
+    let begins = conduct.manoeuvres.iter().map(|m| m.departure.begins_s());
+    require(
+        begins.is_sorted(),
+        "manoeuvres in another order than that of time",
+        0.0,
+    );
+    let largest = conduct.largest_off_plan_m;
+    let is_off = largest > 0.0 || conduct.largest_off_plan_t_s == 0.0;
+    require(
+        is_off,
+        "a time at which own ship is off its plan by nothing",
+        0.0,
+    );
+    let plans = document.timing.plan_s.len();
+    require(
+        plans == document.replans.len(),
+        "other times of planning than plans",
+        0.0,
+    );
     let moves_ahead =
         |target: &SimulatedTargetDocument| target.track.iter().all(|s| s.speed_mps >= 0.0);
     require(
@@ -392,10 +438,80 @@ fn contradictions(document: &SimulationDocument) -> Vec<Violation> {
 struct Results {
     safe: bool,
     contact: bool,
+    arrived: bool,
     conduct: SailedDocument,
+    alarms: Vec<PlanAlarm>,
+    /// Per target.
+    outside_sets: Vec<usize>,
 }
 
-/// The conduct, with what follows from the plans and the alarms. The rest is taken as given.
+/// An alarm that a plan raises when it is made. That it is unsafe may name any target.
+#[derive(Serialize)]
+struct PlanAlarm {
+    t_s: f64,
+    alarm: Alarm,
+    target: Option<String>,
+}
+
+impl PlanAlarm {
+    fn of(alarm: &AlarmDocument) -> Option<Self> {
+        let target = match alarm.alarm {
+            Alarm::AnotherVelocity | Alarm::AnotherPlace => alarm.target.clone(),
+            Alarm::NoPlan | Alarm::PlanTooLate | Alarm::UnsafePlan => None,
+            _ => return None,
+        };
+        let (t_s, alarm) = (alarm.t_s, alarm.alarm);
+        Some(Self { t_s, alarm, target })
+    }
+}
+
+/// The alarms of a plan.
+fn alarms_of(replan: &ReplanDocument) -> Vec<PlanAlarm> {
+    let velocities = replan.outside_velocities.iter();
+    let outside = velocities.map(|name| (Alarm::AnotherVelocity, Some(name)));
+    let places = replan.outside_places.iter();
+    let outside = outside.chain(places.map(|name| (Alarm::AnotherPlace, Some(name))));
+    let of_plan = match (replan.cost_m2, replan.followed, replan.safe) {
+        (None, ..) => Some(Alarm::NoPlan),
+        (_, false, _) => Some(Alarm::PlanTooLate),
+        (.., false) => Some(Alarm::UnsafePlan),
+        _ => None,
+    };
+    let all = outside.chain(of_plan.map(|alarm| (alarm, None)));
+    let alarm = |(alarm, target): (Alarm, Option<&String>)| PlanAlarm {
+        t_s: replan.t_s,
+        alarm,
+        target: target.cloned(),
+    };
+    all.map(alarm).collect()
+}
+
+/// Number of plans that find a target outside the sets of the plan before, and of alarms that it is
+/// outside those of a plan which begins.
+fn outside_sets(document: &SimulationDocument, name: &String) -> usize {
+    let is_outside = |p: &&ReplanDocument| {
+        p.outside_velocities.contains(name) || p.outside_places.contains(name)
+    };
+    let is_left =
+        |a: &&AlarmDocument| a.alarm == Alarm::OutsideSet && a.target.as_ref() == Some(name);
+    document.replans.iter().filter(is_outside).count()
+        + document.alarms.iter().filter(is_left).count()
+}
+
+/// True at the end of a plan to the last waypoint, no farther from it than off the plan; under
+/// forces, within own length of it. A ship that was beyond its tracking margin may have been so at
+/// the end, which is taken as given.
+fn arrived(document: &SimulationDocument, cycles: &Cycles, within_margin: bool) -> bool {
+    let off_plan = document.conduct.largest_off_plan_m + DISTANCE_M;
+    match document.settings.vessel {
+        SailedVessel::CyberShip2 => document.to_go_m <= document.settings.own_length_m,
+        _ if !cycles.ends_at_last_waypoint() => false,
+        _ => document.to_go_m <= off_plan && (within_margin || document.arrived),
+    }
+}
+
+/// The conduct, with what follows from the plans, the alarms and the conduct toward each target. The
+/// rest is taken as given.
 fn conduct_of(document: &SimulationDocument) -> SailedDocument {
     let plans = |is_one: fn(&ReplanDocument) -> bool| {
         let replans = document.replans.iter();
@@ -403,16 +519,23 @@ fn conduct_of(document: &SimulationDocument) -> SailedDocument {
     };
     let mut alarms = document.alarms.iter();
     let said = &document.conduct;
+    let conducts = || document.targets.iter().map(|target| &target.conduct);
+    let most = |of: fn(&ManoeuvreDocument) -> usize| {
+        let manoeuvres = conducts().filter_map(|conduct| conduct.manoeuvre.as_ref());
+        manoeuvres.map(of).max().unwrap_or(0)
+    };
+    let breaks: BTreeSet<&str> = conducts().flat_map(conduct_breaks).collect();
+    let first = document.replans.first().filter(|first| arrives(first));
     // every field is named, so that a new one is not compared with itself unseen
     SailedDocument {
         without_plan: plans(|replan| replan.cost_m2.is_none()),
         unsafe_plans: plans(|replan| replan.cost_m2.is_some() && !replan.safe),
         within_tracking_margin: !alarms.any(|alarm| alarm.alarm == Alarm::BeyondMargin),
         cost_m2: said.cost_m2,
-        first_plan_cost_m2: said.first_plan_cost_m2,
-        breaks: said.breaks.clone(),
-        turns: said.turns,
-        speed_changes: said.speed_changes,
+        first_plan_cost_m2: first.and_then(|first| first.cost_m2),
+        breaks: breaks.into_iter().map(str::to_owned).collect(),
+        turns: most(|manoeuvre| manoeuvre.turns),
+        speed_changes: most(|manoeuvre| manoeuvre.speed_changes),
         manoeuvres: said.manoeuvres.clone(),
         replaced_manoeuvres: said.replaced_manoeuvres,
         side_switches: said.side_switches,
@@ -431,15 +554,39 @@ fn known(
     targets.filter(move |target| target.unknown_until_s <= time)
 }
 
-/// Why a plan may be made at a time, seconds, after the first one.
-fn reasons(document: &SimulationDocument, time: f64) -> Vec<String> {
+/// Why a plan after the first one may be made: for its period, or for an event that the document
+/// has.
+fn reasons(document: &SimulationDocument, index: usize) -> Vec<String> {
     let mut reasons = vec![ReplanDocument::PERIOD.to_owned()];
-    if document.settings.replan_on_events {
-        let events = [ReplanDocument::ANOTHER_VELOCITY, ReplanDocument::ACQUIRED];
-        reasons.extend(known(document, time).flat_map(|target| {
-            let name = &target.name;
-            events.map(|event| format!("{event}: {name}"))
-        }));
+    if !document.settings.replan_on_events {
+        return reasons;
+    }
+    let (before, replan) = (&document.replans[..index], &document.replans[index]);
+    let raised = |kind: Alarm, name: Option<&String>| {
+        let mut earlier = document
+            .alarms
+            .iter()
+            .filter(|alarm| alarm.t_s <= replan.t_s);
+        earlier.any(|a| a.alarm == kind && a.target.as_ref() == name)
+    };
+    let last = before.last().map_or(0.0, |plan| plan.t_s);
+    // without a plan, or under forces, no set of the one before is remembered
+    let is_remembered = document.settings.vessel != SailedVessel::CyberShip2
+        && before.iter().any(|plan| plan.followed);
+    for target in known(document, replan.t_s) {
+        let name = &target.name;
+        let mut outside = replan
+            .outside_velocities
+            .iter()
+            .chain(&replan.outside_places);
+        if outside.any(|other| other == name) || !is_remembered {
+            reasons.push(format!("{}: {name}", ReplanDocument::ANOTHER_VELOCITY));
+        }
+        if target.unknown_until_s > last || raised(Alarm::Stale, Some(name)) {
+            reasons.push(format!("{}: {name}", ReplanDocument::ACQUIRED));
+        }
+    }
+    if raised(Alarm::BeyondMargin, None) {
         reasons.push(Alarm::BeyondMargin.to_string());
     }
     reasons

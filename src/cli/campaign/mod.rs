@@ -304,12 +304,16 @@ fn replay(args: &ReplayArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             output.note(&format_args!("row {row} is not in the campaign yet"));
             ExitStatus::Good
         }
-        Some(kept) => match differing(&kept, &again.cells).as_slice() {
-            [] => {
+        Some(kept) => match (
+            differing(&kept, &again.cells).as_slice(),
+            folder.document_fault(&kept),
+        ) {
+            ([], None) => {
                 output.note(&format_args!("row {row} is as it was in the campaign"));
                 ExitStatus::Good
             }
-            columns => output.fault(&format_args!(
+            ([], Some(fault)) => output.fault(&fault),
+            (columns, _) => output.fault(&format_args!(
                 "row {row} is not as it was in the campaign, which another build may have sailed: \
                  {}",
                 columns.join(", ")

@@ -146,6 +146,7 @@ impl Simulation {
         let replan = ReplanDocument {
             t_s: self.time,
             start_t_s: start,
+            end_s: plan.map(|plan| start + plan.trajectory.end_time()),
             reason,
             verdict: (document.as_ref()).map_or_else(|| run.word(), |plan| plan.verdict.clone()),
             safe: document.as_ref().is_some_and(PlanDocument::is_safe),

@@ -50,7 +50,7 @@ const INSTANT: f64 = 1e-9;
 const SHORT_STEP: f64 = 1e-6;
 
 /// Seconds before the end of a plan that ends short at which another one takes effect at the latest.
-const BEFORE_END_S: f64 = 2.0;
+const BEFORE_END_S: f64 = ReplanDocument::BEFORE_END_S;
 
 /// m/s. Added to the distance from a contact per second ahead.
 const CLOSING_SPEED: f64 = 1.0;

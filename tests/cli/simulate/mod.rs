@@ -274,7 +274,7 @@ fn a_plan_is_asked_for_when_a_target_is_reported_again() {
     let shown = stdout(&searoom(&["verify", &name]).code(1));
     says(
         &shown,
-        "found 'acquired: nobody'; allowed: period, another velocity: target, acquired: target",
+        "found 'acquired: nobody'; allowed: period, acquired: target",
     );
 }
 
