@@ -1,0 +1,591 @@
+//! What the fields of a message mean (Recommendation ITU-R M.1371-5, annex 8), as sets.
+//!
+//! Each code that stands for "unknown" or for "or more" widens a set here, with a [`Note`]. The table is in
+//! docs/reference/traffic.md.
+
+use std::f64::consts::PI;
+
+use searoom_geometry::frame::{
+    Geographic, KNOT_MPS, NAUTICAL_MILE_M, Vector, heading_from_course_deg,
+};
+
+use crate::assembly::Message;
+use crate::bits::Bits;
+use crate::counts::Dropped;
+use crate::report::{
+    Directions, Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, PositionSet, Report,
+    Status, VelocitySet,
+};
+
+/// What a report does not say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Radius of a fix that says it is better than 10 m, metres.
+    pub accurate_m: f64,
+    /// Radius of another one, metres.
+    pub inaccurate_m: f64,
+    /// Radius of a place that was not measured, metres.
+    pub not_measured_m: f64,
+    /// Speed below which a course is noise, m/s.
+    pub least_course_mps: f64,
+    /// Error of a course beyond its step, rad.
+    pub course_error: f64,
+    /// Error of a heading beyond its step, rad.
+    pub heading_error: f64,
+    /// Speed from which the course stands for an unknown heading, m/s, and within what, rad.
+    pub heading_from_mps: f64,
+    /// See `heading_from_mps`.
+    pub heading_from_course: f64,
+    /// Largest length and beam of a ship of class A, metres.
+    pub class_a_m: [f64; 2],
+    /// Largest length and beam of a ship of class B, metres.
+    pub class_b_m: [f64; 2],
+    /// Time between two reports of classes A and B, seconds: the age of a fix without a time stamp.
+    pub interval_s: [f64; 2],
+    /// Age of a long-range fix that is said to be older than 5 s, seconds.
+    pub latent_s: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let degrees = PI / 180.0;
+        Self {
+            accurate_m: 10.0,
+            inaccurate_m: 50.0,
+            not_measured_m: 0.5 * NAUTICAL_MILE_M,
+            least_course_mps: KNOT_MPS,
+            course_error: 2.0 * degrees,
+            heading_error: 2.0 * degrees,
+            heading_from_mps: 5.0 * KNOT_MPS,
+            heading_from_course: 15.0 * degrees,
+            class_a_m: [500.0, 70.0],
+            class_b_m: [50.0, 15.0],
+            interval_s: [10.0, 30.0],
+            latent_s: 60.0,
+        }
+    }
+}
+
+/// Longest ship and greatest beam, metres: more is typed in wrongly.
+const LONGEST_M: f64 = 460.0;
+
+/// Metres for a minute of latitude, and for one of longitude at the equator. Each is the largest on WGS 84, so
+/// that half a step is not too small.
+const MINUTE_NORTH_M: f64 = 1861.7;
+const MINUTE_EAST_M: f64 = 1855.4;
+
+/// Where the fields of a message with a position are, and how they are scaled.
+struct Layout {
+    /// First bits of speed, accuracy, position, course and heading, and of the time stamp.
+    speed: usize,
+    accuracy: usize,
+    longitude: usize,
+    course: usize,
+    heading: Option<usize>,
+    second: usize,
+    /// Knots of a step of the speed.
+    speed_step: f64,
+}
+
+/// Of classes A and B, and of an aircraft, which counts in whole knots.
+const CLASS_A: Layout = Layout {
+    speed: 50,
+    accuracy: 60,
+    longitude: 61,
+    course: 116,
+    heading: Some(128),
+    second: 137,
+    speed_step: 0.1,
+};
+const CLASS_B: Layout = Layout {
+    speed: 46,
+    accuracy: 56,
+    longitude: 57,
+    course: 112,
+    heading: Some(124),
+    second: 133,
+    speed_step: 0.1,
+};
+const AIRCRAFT: Layout = Layout {
+    speed: 50,
+    heading: None,
+    second: 128,
+    speed_step: 1.0,
+    ..CLASS_A
+};
+
+/// Report of a whole message, and why there is none.
+pub(crate) fn report(message: &Message, settings: &Settings) -> Result<Report, Dropped> {
+    let bits = &message.bits;
+    let number = bits.unsigned(0, 6);
+    let least = match number {
+        1..=3 | 4 | 11 | 9 | 18 => 144,
+        5 => 302,
+        19 => 301,
+        21 => 270,
+        24 => 160,
+        27 => 95,
+        _ => return Err(Dropped::OtherMessage),
+    };
+    if bits.len < least {
+        return Err(Dropped::TooShort);
+    }
+    let mmsi = bits.unsigned(8, 30);
+    let mut report = Report {
+        received: message.received,
+        source: message.source,
+        identity: Identity::Mmsi(mmsi),
+        kind: kind(number, mmsi),
+        is_own: message.is_own,
+        fix: None,
+        hull: None,
+        status: None,
+        name: None,
+        call_sign: None,
+        type_code: None,
+        mother_ship: None,
+        notes: Notes::default(),
+    };
+    let read = Reading {
+        bits,
+        settings,
+        received: message.received,
+    };
+    let notes = &mut report.notes;
+    match number {
+        1..=3 => {
+            let mut fix = read.moving(&CLASS_A, notes);
+            fix.turn_rate = read.turn_rate(42);
+            report.status = status(bits.unsigned(38, 4), mmsi);
+            contradiction(report.status, &fix, notes);
+            if bits.flag(148) {
+                notes.add(Note::Raim);
+            }
+            report.fix = Some(fix);
+        }
+        4 | 11 => report.fix = Some(read.station(notes)),
+        5 => {
+            report.hull = Some(read.hull(240, settings.class_a_m, notes));
+            report.call_sign = name(bits, 70, 7);
+            report.name = name(bits, 112, 20);
+            report.type_code = Some(bits.unsigned(232, 8) as u8);
+            if bits.len < 422 {
+                notes.add(Note::Short);
+            }
+        }
+        9 => report.fix = Some(read.moving(&AIRCRAFT, notes)),
+        18 => report.fix = Some(read.moving(&CLASS_B, notes)),
+        19 => {
+            report.fix = Some(read.moving(&CLASS_B, notes));
+            report.name = name(bits, 143, 20);
+            report.type_code = Some(bits.unsigned(263, 8) as u8);
+            report.hull = Some(read.hull(271, settings.class_b_m, notes));
+        }
+        21 => {
+            report.fix = Some(read.mark(notes));
+            report.name = name(bits, 43, 20);
+            report.type_code = Some(bits.unsigned(38, 5) as u8);
+            report.hull = Some(read.hull(219, settings.class_b_m, notes));
+            if bits.flag(269) {
+                report.kind = Kind::VirtualMark;
+            }
+            // without a second the flag means nothing
+            if bits.flag(259) && bits.unsigned(253, 6) < 60 {
+                notes.add(Note::OffPosition);
+            }
+        }
+        24 => match bits.unsigned(38, 2) {
+            0 => report.name = name(bits, 40, 20),
+            1 => {
+                report.type_code = Some(bits.unsigned(40, 8) as u8);
+                report.call_sign = name(bits, 90, 7);
+                // the bits of the size are the number of the mother ship
+                if report.kind == Kind::Craft {
+                    report.mother_ship = Some(Identity::Mmsi(bits.unsigned(132, 30)));
+                    notes.add(Note::NoSize);
+                    let [length, beam] = settings.class_b_m;
+                    report.hull = Some(HullSet::unknown(length, beam));
+                } else {
+                    report.hull = Some(read.hull(132, settings.class_b_m, notes));
+                }
+            }
+            _ => return Err(Dropped::OtherMessage),
+        },
+        _ => {
+            let fix = read.long_range(notes);
+            report.status = status(bits.unsigned(40, 4), mmsi);
+            contradiction(report.status, &fix, notes);
+            report.fix = Some(fix);
+        }
+    }
+    Ok(report)
+}
+
+fn kind(number: u32, mmsi: u32) -> Kind {
+    match (number, mmsi / 1_000_000) {
+        (_, 970 | 972 | 974) => Kind::Distress,
+        (4, _) => Kind::BaseStation,
+        (9, _) => Kind::Aircraft,
+        (21, _) => Kind::Mark,
+        (_, 980..=989) => Kind::Craft,
+        (1..=3 | 5 | 11, _) => Kind::ClassA,
+        (27, _) => Kind::Ship,
+        _ => Kind::ClassB,
+    }
+}
+
+fn status(code: u32, mmsi: u32) -> Option<Status> {
+    let is_distress = matches!(mmsi / 1_000_000, 970 | 972 | 974);
+    Some(match code {
+        0 => Status::UnderWay,
+        1 => Status::Anchored,
+        2 => Status::NotUnderCommand,
+        3 => Status::Restricted,
+        4 => Status::ConstrainedByDraught,
+        5 => Status::Moored,
+        6 => Status::Aground,
+        7 => Status::Fishing,
+        8 => Status::Sailing,
+        11 => Status::TowingAstern,
+        12 => Status::Pushing,
+        14 => Status::Distress,
+        15 if is_distress => Status::DistressTest,
+        _ => return None,
+    })
+}
+
+/// A switch that was forgotten makes no set smaller.
+fn contradiction(status: Option<Status>, fix: &Fix, notes: &mut Notes) {
+    let rests = matches!(
+        status,
+        Some(Status::Anchored | Status::Moored | Status::Aground)
+    );
+    if rests && fix.velocity.speed.least > KNOT_MPS {
+        notes.add(Note::StatusContradictsSpeed);
+    }
+}
+
+/// The fields of one message.
+struct Reading<'m> {
+    bits: &'m Bits,
+    settings: &'m Settings,
+    received: f64,
+}
+
+impl Reading<'_> {
+    /// Position and motion of classes A and B and of aircraft.
+    fn moving(&self, layout: &Layout, notes: &mut Notes) -> Fix {
+        let bits = self.bits;
+        let (mut time, is_measured) = self.time(layout.second, notes);
+        if layout.heading.is_none() {
+            // an aircraft's reports are not dated by a class
+            time.least = time.least.min(self.received - self.settings.interval_s[0]);
+        }
+        let position = self.position(layout.longitude, layout.accuracy, is_measured, notes);
+        let speed_code = bits.unsigned(layout.speed, 10);
+        let course_code = bits.unsigned(layout.course, 12);
+        let heading_code = layout.heading.map(|from| bits.unsigned(from, 9));
+        let speed = match speed_code {
+            // an encoder that knows nothing sends zeros
+            0 if course_code == 0 && heading_code == Some(511) => {
+                notes.add(Note::ZerosForUnknown);
+                Interval::new(0.0, f64::INFINITY)
+            }
+            1023 => {
+                notes.add(Note::NoSpeed);
+                Interval::new(0.0, f64::INFINITY)
+            }
+            1022 => {
+                notes.add(Note::SpeedOrMore);
+                Interval::new(1021.5 * layout.speed_step * KNOT_MPS, f64::INFINITY)
+            }
+            code => steps(f64::from(code), layout.speed_step * KNOT_MPS),
+        };
+        let course = (course_code < 3600).then(|| (0.1 * f64::from(course_code), 0.05));
+        let course = self.course(course, speed, notes);
+        let heading = match heading_code {
+            Some(code @ ..360) => about(f64::from(code), 0.5, self.settings.heading_error),
+            _ => self.without_heading(speed, course, notes),
+        };
+        Fix {
+            time,
+            position,
+            velocity: VelocitySet { speed, course },
+            heading,
+            turn_rate: None,
+        }
+    }
+
+    /// A station, or a ship that answers with its place: no motion.
+    fn station(&self, notes: &mut Notes) -> Fix {
+        let (time, is_measured) = self.time(72, notes);
+        Fix {
+            time,
+            position: self.position(79, 78, is_measured, notes),
+            velocity: VelocitySet::UNKNOWN,
+            heading: Directions::ALL,
+            turn_rate: None,
+        }
+    }
+
+    /// A mark rests.
+    fn mark(&self, notes: &mut Notes) -> Fix {
+        let (time, is_measured) = self.time(253, notes);
+        Fix {
+            time,
+            position: self.position(164, 163, is_measured, notes),
+            velocity: VelocitySet {
+                speed: Interval::new(0.0, 0.0),
+                course: Directions::ALL,
+            },
+            heading: Directions::ALL,
+            turn_rate: None,
+        }
+    }
+
+    /// The message for satellites: tenths of a minute, whole knots and degrees.
+    fn long_range(&self, notes: &mut Notes) -> Fix {
+        let bits = self.bits;
+        // sent without a time stamp
+        let age = match bits.flag(94) {
+            true => {
+                notes.add(Note::Latent);
+                self.settings.latent_s
+            }
+            false => 5.0,
+        };
+        let (longitude, latitude) = (bits.signed(44, 18), bits.signed(62, 17));
+        let position = self.place(
+            (f64::from(longitude), f64::from(latitude)),
+            10.0,
+            self.radius(bits.flag(38), true),
+            notes,
+        );
+        let (speed_code, course_code) = (bits.unsigned(79, 6), bits.unsigned(85, 9));
+        let speed = match speed_code {
+            63 => {
+                notes.add(Note::NoSpeed);
+                Interval::new(0.0, f64::INFINITY)
+            }
+            code => steps(f64::from(code), KNOT_MPS),
+        };
+        let course = (course_code < 360).then(|| (f64::from(course_code), 0.5));
+        let course = self.course(course, speed, notes);
+        Fix {
+            time: Interval::new(self.received - age, self.received),
+            position,
+            velocity: VelocitySet { speed, course },
+            heading: self.without_heading(speed, course, notes),
+            turn_rate: None,
+        }
+    }
+
+    /// When the fix was taken, and whether it was measured: in the minute that is nearest to the reception.
+    fn time(&self, from: usize, notes: &mut Notes) -> (Interval, bool) {
+        let second = self.bits.unsigned(from, 6);
+        if second < 60 {
+            let since = (self.received - f64::from(second)).rem_euclid(60.0);
+            let at = match since <= 30.0 {
+                true => self.received - since,
+                false => self.received - since + 60.0,
+            };
+            return (Interval::new(at, at + 1.0), true);
+        }
+        let [class_a, class_b] = self.settings.interval_s;
+        let age = match self.bits.unsigned(0, 6) {
+            18 | 19 => class_b,
+            _ => class_a,
+        };
+        let is_measured = second == 60;
+        notes.add(match is_measured {
+            true => Note::AgeUnknown,
+            false => Note::NotMeasured,
+        });
+        (
+            Interval::new(self.received - age, self.received),
+            is_measured,
+        )
+    }
+
+    fn radius(&self, is_accurate: bool, is_measured: bool) -> f64 {
+        match (is_measured, is_accurate) {
+            (false, _) => self.settings.not_measured_m,
+            (true, true) => self.settings.accurate_m,
+            (true, false) => self.settings.inaccurate_m,
+        }
+    }
+
+    /// A position in ten thousandths of a minute.
+    fn position(
+        &self,
+        from: usize,
+        accuracy: usize,
+        is_measured: bool,
+        notes: &mut Notes,
+    ) -> Option<PositionSet> {
+        let bits = self.bits;
+        let (longitude, latitude) = (bits.signed(from, 28), bits.signed(from + 28, 27));
+        let counts = (f64::from(longitude), f64::from(latitude));
+        let radius = self.radius(bits.flag(accuracy), is_measured);
+        self.place(counts, 10_000.0, radius, notes)
+    }
+
+    /// A position in parts of a minute; none where one of them is not on the earth.
+    fn place(
+        &self,
+        (longitude, latitude): (f64, f64),
+        parts: f64,
+        radius_m: f64,
+        notes: &mut Notes,
+    ) -> Option<PositionSet> {
+        let at = Geographic::new(latitude / (60.0 * parts), longitude / (60.0 * parts));
+        if !at.is_on_earth() {
+            notes.add(Note::NoPosition);
+            return None;
+        }
+        // a degree of longitude is longest at the edge toward the equator
+        let edge = (at.lat_deg.abs() - 0.5 / (60.0 * parts)).max(0.0);
+        let east = MINUTE_EAST_M * edge.to_radians().cos().max(0.0);
+        Some(PositionSet {
+            at,
+            half_cell_m: Vector::new(east, MINUTE_NORTH_M) * (0.5 / parts),
+            radius_m,
+        })
+    }
+
+    /// A course in degrees with half a step, where the ship is fast enough for one.
+    fn course(&self, course: Option<(f64, f64)>, speed: Interval, notes: &mut Notes) -> Directions {
+        let Some((degrees, half_step)) = course else {
+            notes.add(Note::NoCourse);
+            return Directions::ALL;
+        };
+        if speed.least < self.settings.least_course_mps {
+            notes.add(Note::SlowCourse);
+            return Directions::ALL;
+        }
+        about(degrees, half_step, self.settings.course_error)
+    }
+
+    /// The heading where none is sent: about the course of a ship that is fast.
+    fn without_heading(
+        &self,
+        speed: Interval,
+        course: Directions,
+        notes: &mut Notes,
+    ) -> Directions {
+        notes.add(Note::NoHeading);
+        if speed.least < self.settings.heading_from_mps || course.half >= PI {
+            return Directions::ALL;
+        }
+        notes.add(Note::HeadingFromCourse);
+        Directions {
+            half: (course.half + self.settings.heading_from_course).min(PI),
+            ..course
+        }
+    }
+
+    /// Rate of turn from its root in 4.733 degrees a minute, starboard positive.
+    fn turn_rate(&self, from: usize) -> Option<Interval> {
+        let code = self.bits.signed(from, 8);
+        let rate = |root: f64| (root / 4.733).powi(2) * PI / 180.0 / 60.0;
+        let root = f64::from(code.abs());
+        let size = match code.abs() {
+            128 => return None,
+            // to this side at more than 5° in 30 s
+            127 => Interval::new(10.0 * PI / 180.0 / 60.0, f64::INFINITY),
+            126 => Interval::new(rate(125.5), f64::INFINITY),
+            0 => return Some(Interval::new(-rate(0.5), rate(0.5))),
+            _ => Interval::new(rate(root - 0.5), rate(root + 0.5)),
+        };
+        // to starboard is negative in the plane
+        Some(match code > 0 {
+            true => Interval::new(-size.most, -size.least),
+            false => size,
+        })
+    }
+
+    /// Distances from the antenna to bow, stern, port and starboard side.
+    fn hull(&self, from: usize, [length, beam]: [f64; 2], notes: &mut Notes) -> HullSet {
+        let metres = |from: usize, bits: usize| f64::from(self.bits.unsigned(from, bits));
+        let [bow, stern] = [metres(from, 9), metres(from + 9, 9)];
+        let [port, starboard] = [metres(from + 18, 6), metres(from + 24, 6)];
+        let (long, wide) = (bow + stern, port + starboard);
+        if long == 0.0 || wide == 0.0 {
+            notes.add(Note::NoSize);
+            let mut hull = HullSet::unknown(length.max(long), beam.max(wide));
+            if long > 0.0 {
+                notes.add(Note::NoAntenna);
+            }
+            if long == 0.0 && wide > 0.0 {
+                hull.port.most = beam.max(wide);
+            }
+            return hull;
+        }
+        if long < wide || long > LONGEST_M && bow < 511.0 && stern < 511.0 {
+            notes.add(Note::WrongSize);
+            let most = long.max(wide);
+            return HullSet::unknown(most, most);
+        }
+        // a code that means "or more" reaches as far as any ship
+        let [longest, widest] = Settings::default().class_a_m;
+        let mut side = |code: f64, highest: f64, largest: f64| match code >= highest {
+            true => {
+                notes.add(Note::SizeOrMore);
+                Interval::new(code - 0.5, largest.max(code))
+            }
+            false => Interval::new((code - 0.5).max(0.0), code + 0.5),
+        };
+        let hull = HullSet {
+            ahead: side(bow, 511.0, longest.max(511.0)),
+            astern: side(stern, 511.0, longest.max(511.0)),
+            port: side(port, 63.0, widest),
+            starboard: side(starboard, 63.0, widest),
+        };
+        if bow == 0.0 && port == 0.0 {
+            notes.add(Note::NoAntenna);
+            let along = Interval::new(0.0, hull.astern.most);
+            let across = Interval::new(0.0, hull.starboard.most);
+            return HullSet {
+                ahead: along,
+                astern: along,
+                port: across,
+                starboard: across,
+            };
+        }
+        hull
+    }
+}
+
+/// A number of steps, to half a step each way. Speeds are not negative.
+fn steps(number: f64, step: f64) -> Interval {
+    let about = Interval::about(number * step, 0.5 * step);
+    Interval::new(about.least.max(0.0), about.most)
+}
+
+/// Degrees clockwise from north with half a step, and an error in radians.
+fn about(degrees: f64, half_step: f64, error: f64) -> Directions {
+    Directions {
+        middle: heading_from_course_deg(degrees),
+        half: half_step.to_radians() + error,
+    }
+}
+
+/// Text of six-bit characters without what follows `@`, and without blanks at its end.
+fn name(bits: &Bits, from: usize, most: usize) -> Option<Name> {
+    let mut name = Name {
+        letters: [0; 20],
+        length: 0,
+    };
+    for index in 0..most {
+        let code = bits.unsigned(from + 6 * index, 6) as u8;
+        if code == 0 || from + 6 * (index + 1) > bits.len {
+            break;
+        }
+        name.letters[index] = if code < 32 { code + 64 } else { code };
+        name.length = index as u8 + 1;
+    }
+    while name.length > 0 && name.letters[usize::from(name.length) - 1] == b' ' {
+        name.length -= 1;
+    }
+    (name.length > 0).then_some(name)
+}

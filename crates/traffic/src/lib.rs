@@ -1,0 +1,27 @@
+//! Reports of real ships: every field of a [`Report`] is a set or unknown, never a number that stands for
+//! "unknown".
+//!
+//! ```text
+//! bytes ─► lines ─► sentence: tag block, check sum ─► parts of a message ─► bits ─► Report
+//! ```
+//!
+//! What does not become a report is counted by its reason ([`Counts`]), so that nothing vanishes silently.
+//! So far the reader takes AIS: VDM and VDO with messages 1 to 5, 9, 11, 18, 19, 21, 24 and 27 of
+//! Recommendation ITU-R M.1371-5. What each code means, and what it does to a set, is a table in
+//! docs/reference/traffic.md.
+
+mod ais;
+mod assembly;
+mod bits;
+mod counts;
+mod reader;
+mod report;
+mod sentence;
+
+pub use ais::Settings;
+pub use counts::{Counts, Dropped};
+pub use reader::Reader;
+pub use report::{
+    Directions, Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, PositionSet, Report,
+    SourceId, Status, VelocitySet,
+};

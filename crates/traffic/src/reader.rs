@@ -1,0 +1,144 @@
+//! From bytes to reports.
+
+use crate::ais::{self, Settings};
+use crate::assembly::Assembler;
+use crate::counts::{Counts, Dropped};
+use crate::report::{Report, SourceId};
+use crate::sentence::{MOST_BYTES, part};
+
+/// Most sources that are told apart; later ones count as one.
+const MOST_SOURCES: usize = 1000;
+
+/// Reads sentences, keeps what waits for its other parts, and counts what is dropped.
+///
+/// ```
+/// use searoom_traffic::{Reader, Settings};
+///
+/// let mut reader = Reader::new(Settings::default());
+/// let line = b"\\c:1565218798*53\\!BSVDM,1,1,,A,13mb9U0P00PRk8fT5nw>4?wj2006,0*5D";
+/// let report = reader.line(line, 0.0).expect("a position");
+/// let place = report.fix.and_then(|fix| fix.position).expect("a place").at;
+/// assert!((place.lat_deg - 63.0746).abs() < 1e-4 && report.received == 1565218798.0);
+/// ```
+#[derive(Debug)]
+pub struct Reader {
+    settings: Settings,
+    assembler: Assembler,
+    counts: Counts,
+    sources: Vec<Vec<u8>>,
+    /// The beginning of a line whose end has not come.
+    begun: Vec<u8>,
+    /// True within a line that is too long.
+    skips: bool,
+}
+
+impl Reader {
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            assembler: Assembler::default(),
+            counts: Counts::default(),
+            sources: Vec::new(),
+            begun: Vec::new(),
+            skips: false,
+        }
+    }
+
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+
+    /// The name of a source, as it was sent.
+    pub fn source(&self, source: SourceId) -> &[u8] {
+        let known = self.sources.get(usize::from(source.0));
+        known.map_or(b"others", Vec::as_slice)
+    }
+
+    /// Reads the next bytes of a stream, which may begin and end within a line. Lines without a time are dated
+    /// `now`, in seconds of Unix time.
+    pub fn bytes(&mut self, mut bytes: &[u8], now: f64, mut found: impl FnMut(Report)) {
+        while let Some(end) = bytes.iter().position(|byte| *byte == b'\n') {
+            let (line, rest) = (&bytes[..end], &bytes[end + 1..]);
+            bytes = rest;
+            let report = match (self.skips, self.begun.is_empty()) {
+                (true, _) => None,
+                (false, true) => self.line(line, now),
+                (false, false) => {
+                    let mut whole = std::mem::take(&mut self.begun);
+                    whole.extend_from_slice(line);
+                    let report = self.line(&whole, now);
+                    whole.clear();
+                    self.begun = whole;
+                    report
+                }
+            };
+            self.skips = false;
+            report.into_iter().for_each(&mut found);
+        }
+        if !self.skips {
+            self.begun.extend_from_slice(bytes);
+            if self.begun.len() > MOST_BYTES {
+                self.counts.lines += 1;
+                self.counts.drop(Dropped::TooLong);
+                (self.begun, self.skips) = (Vec::new(), true);
+            }
+        }
+    }
+
+    /// Reads the line at the end of a stream that has no line end.
+    pub fn finish(&mut self, now: f64) -> Option<Report> {
+        self.skips = false;
+        let line = std::mem::take(&mut self.begun);
+        self.line(&line, now)
+    }
+
+    /// The report of a line, or of the message that it completes.
+    pub fn line(&mut self, line: &[u8], now: f64) -> Option<Report> {
+        let line = line.trim_ascii();
+        if line.is_empty() {
+            return None;
+        }
+        self.counts.lines += 1;
+        let found = match line.len() > MOST_BYTES {
+            true => Err(Dropped::TooLong),
+            false => part(line),
+        };
+        let part = match found {
+            Ok((part, ignored)) => {
+                ignored.into_iter().for_each(|why| self.counts.drop(why));
+                part
+            }
+            Err(why) => {
+                self.counts.drop(why);
+                return None;
+            }
+        };
+        let source = part.tag.source.map(|name| self.source_of(name));
+        let received = part.tag.time.unwrap_or(now);
+        let message = (self.assembler).add(&part, (source, received), &mut self.counts)?;
+        self.counts.message(message.bits.unsigned(0, 6) as u8);
+        match ais::report(&message, &self.settings) {
+            Ok(report) => {
+                self.counts.reports += 1;
+                Some(report)
+            }
+            Err(why) => {
+                self.counts.drop(why);
+                None
+            }
+        }
+    }
+
+    fn source_of(&mut self, name: &[u8]) -> SourceId {
+        let known = self.sources.iter().position(|known| known == name);
+        let index = known.unwrap_or_else(|| {
+            if self.sources.len() < MOST_SOURCES {
+                self.sources.push(name.to_vec());
+                self.sources.len() - 1
+            } else {
+                MOST_SOURCES
+            }
+        });
+        SourceId(index as u16)
+    }
+}
