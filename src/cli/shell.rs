@@ -4,7 +4,7 @@ use clap::CommandFactory;
 use clap_complete::generate;
 
 use searoom::document::SCHEMAS;
-use searoom::scenario::{self, thresholds_schema};
+use searoom::scenario::{scenario_schema, thresholds_schema};
 
 use super::args::{Arguments, CompletionsArgs, SchemaArgs};
 use super::output::Output;
@@ -34,6 +34,6 @@ pub fn schema(args: &SchemaArgs, output: &Output) -> ExitStatus {
     match SCHEMAS.iter().find(|(kind, _)| *kind == args.kind) {
         Some((_, schema)) => output.document(&schema()),
         None if args.kind == THRESHOLDS => output.document(&thresholds_schema()),
-        None => output.print(scenario::SCHEMA.trim_end()),
+        None => output.document(&scenario_schema()),
     }
 }

@@ -3,15 +3,11 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use searoom::scenario::{Fault, SCHEMA, Scenario};
+use searoom::scenario::{Fault, Scenario, scenario_schema};
 use serde_json::{Map, Value, json};
 
 /// Suffixes of one quantity, of which a file gives one.
 const UNITS: [&str; 5] = ["_mps", "_kn", "_m", "_nmi", "_cbl"];
-
-fn schema() -> Value {
-    serde_json::from_str(SCHEMA).expect("JSON")
-}
 
 /// Files that have every table between them. They need no sense, and are on a late clock, because
 /// no time may lie behind the present.
@@ -329,7 +325,7 @@ fn places(schema: &Value, at: String, tables: &mut Vec<String>, leaves: &mut BTr
 
 #[test]
 fn the_schema_has_the_keys_the_words_and_the_limits_of_the_reader() {
-    let schema = schema();
+    let schema = scenario_schema();
     let (mut known, mut confirmed) = (BTreeMap::new(), BTreeSet::new());
     for file in files() {
         let mut walk = Walk {
@@ -356,7 +352,7 @@ fn the_schema_has_the_keys_the_words_and_the_limits_of_the_reader() {
 
 #[test]
 fn every_scenario_of_the_project_fits_the_schema() {
-    let validator = jsonschema::validator_for(&schema()).expect("a schema");
+    let validator = jsonschema::validator_for(&scenario_schema()).expect("a schema");
     let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("scenarios")];
     let mut count = 0;
     while let Some(folder) = folders.pop() {
@@ -381,7 +377,7 @@ fn every_scenario_of_the_project_fits_the_schema() {
 
 #[test]
 fn a_file_that_lacks_a_key_or_has_a_wrong_one_does_not_fit_the_schema() {
-    let validator = jsonschema::validator_for(&schema()).expect("a schema");
+    let validator = jsonschema::validator_for(&scenario_schema()).expect("a schema");
     let text = include_str!("../../scenarios/colregs/head-on.toml");
     for (old, new) in [
         ("title =", "titel ="),

@@ -36,7 +36,7 @@ pub struct Range {
     pub low: f64,
     /// Greatest allowed number.
     pub high: f64,
-    or_zero: bool,
+    pub(super) or_zero: bool,
     unit: &'static str,
 }
 

@@ -3,6 +3,7 @@
 #![warn(missing_docs)]
 
 mod field;
+pub mod schema;
 mod table;
 pub mod text;
 mod value;

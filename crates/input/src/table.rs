@@ -26,8 +26,8 @@ const OTHER_WORDS: [(&str, &str); 10] = [
 pub(super) type Unit = (&'static str, f64);
 
 /// Units of speeds in m/s and of distances in metres.
-static SPEED_UNITS: [Unit; 2] = [("mps", 1.0), ("kn", NAUTICAL_MILE_M / 3600.0)];
-static DISTANCE_UNITS: [Unit; 3] = [
+pub(super) static SPEED_UNITS: [Unit; 2] = [("mps", 1.0), ("kn", NAUTICAL_MILE_M / 3600.0)];
+pub(super) static DISTANCE_UNITS: [Unit; 3] = [
     ("m", 1.0),
     ("nmi", NAUTICAL_MILE_M),
     ("cbl", NAUTICAL_MILE_M / 10.0),

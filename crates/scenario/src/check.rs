@@ -30,10 +30,10 @@ const DEFAULT_SPEEDS: [f64; 2] = [0.5, 1.0];
 pub(super) const SAME_SPEED: f64 = 1e-9;
 
 /// Cautions of a file.
-const CAUTIONS: usize = 1000;
+pub(super) const CAUTIONS: usize = 1000;
 
 /// The waypoints of a route by their numbers in the file.
-const FROM_WAYPOINT: Range = Range::between(1.0, 10_000.0);
+pub(super) const FROM_WAYPOINT: Range = Range::between(1.0, 10_000.0);
 
 /// Horizon in durations of a mission that is cut out of a longer route.
 const HORIZON_MISSIONS: f64 = 2.0;
@@ -45,10 +45,10 @@ const ROOM_AFTER_TURN: f64 = 4.0;
 const BESIDE_M: f64 = 1.0;
 
 /// Seconds after arrival for which own ship is observed by default.
-const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;
+pub(super) const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;
 
 /// Seconds of wall clock for one plan by default.
-const DEFAULT_DEADLINE: f64 = 5.0;
+pub(super) const DEFAULT_DEADLINE: f64 = 5.0;
 
 /// Reads the text of a scenario file in `folder`. A scenario that comes with faults is of no use.
 pub(super) fn parse(text: &str, folder: &Path, faults: &Faults) -> Option<Scenario> {

@@ -67,7 +67,7 @@ impl Land {
 }
 
 /// Metres around points and lines of a map.
-const POINT_RADIUS: Range = Range::between(0.001, 10_000.0);
+pub(super) const POINT_RADIUS: Range = Range::between(0.001, 10_000.0);
 
 /// The map that the key `map` names, from `folder`: a file, or a table of a file and of the radius
 /// that points and lines have. `None` without the key, or with a fault noted.

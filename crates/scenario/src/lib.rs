@@ -15,6 +15,7 @@ mod out_of_reach;
 mod plane;
 mod planner;
 mod route;
+mod schema;
 mod simulation;
 mod speed_limits;
 mod targets;
@@ -27,6 +28,7 @@ pub use limits::FILE_MEBIBYTES;
 pub use memory::Memory;
 pub use open_water::{open_water, simulation_of, true_motion};
 pub use out_of_reach::{DistantTarget, MOST_WITHOUT_SELECTION, OutOfReach};
+pub use schema::scenario_schema;
 pub use searoom_input::{Fault, InputError as ScenarioError, Remarks};
 pub use searoom_model::{BehaviourKind, Compliance, SensorType};
 pub use simulation::{
@@ -49,10 +51,6 @@ use searoom_model::target::Target;
 use searoom_model::trajectory::{DesiredTrajectory, Trajectory};
 use searoom_model::vessel::OwnShip;
 use searoom_planner::{Objective, Planner, PlannerSettings, SearchKind, Tidiness};
-
-/// The JSON schema of a scenario file. It says what the reader accepts, key by key; what one key
-/// says of another is left to the reader.
-pub const SCHEMA: &str = include_str!("../../../docs/schema/scenario.schema.json");
 
 /// A checked scenario in SI units and the east-north plane.
 #[derive(Debug, Clone, PartialEq)]

@@ -297,19 +297,19 @@ impl Default for SimulationSettings {
     }
 }
 
-const STEP: Range = Range::between(0.01, 10.0);
-const DELAY: Range = Range::between(0.0, 1e6);
-const SEED: Range = Range::between(0.0, 9e15);
-const TIME_CONSTANT: Range = Range::between(0.01, 1e6);
-const NOMOTO: Range = Range::between(0.01, 100.0);
-const RUDDER_DEG: Range = Range::between(1.0, 90.0);
-const CURRENT: Range = Range::between(0.0, 20.0);
-const ANGLE_STD_DEG: Range = Range::between(0.0, 90.0);
-const DETECTION: Range = Range::between(0.01, 1.0);
-const PROBABILITY: Range = Range::between(0.0, 1.0);
-const FACTOR: Range = Range::between(0.0, 10.0);
-const TURN_DEG: Range = Range::within(180.0);
-const SILENT_TIMES: usize = 1000;
+pub(super) const STEP: Range = Range::between(0.01, 10.0);
+pub(super) const DELAY: Range = Range::between(0.0, 1e6);
+pub(super) const SEED: Range = Range::between(0.0, 9e15);
+pub(super) const TIME_CONSTANT: Range = Range::between(0.01, 1e6);
+pub(super) const NOMOTO: Range = Range::between(0.01, 100.0);
+pub(super) const RUDDER_DEG: Range = Range::between(1.0, 90.0);
+pub(super) const CURRENT: Range = Range::between(0.0, 20.0);
+pub(super) const ANGLE_STD_DEG: Range = Range::between(0.0, 90.0);
+pub(super) const DETECTION: Range = Range::between(0.01, 1.0);
+pub(super) const PROBABILITY: Range = Range::between(0.0, 1.0);
+pub(super) const FACTOR: Range = Range::between(0.0, 10.0);
+pub(super) const TURN_DEG: Range = Range::within(180.0);
+pub(super) const SILENT_TIMES: usize = 1000;
 
 /// The table `[simulation]`, which may be absent; `targets` are the keys of the targets for it.
 pub(super) fn simulation(root: &mut Table, targets: Vec<SimulatedTarget>) -> SimulationSettings {

@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
+use serde_json::Value;
 
 use searoom_colregs::Thresholds;
 use searoom_geometry::frame::radians_from_deg;
+use searoom_input::schema::{Schema, choice, having, line_of_text, number, whole_number};
 use searoom_input::text::LINE;
 use searoom_input::{Fault, Faults, Field, InputError, Range, from_toml, read_text};
 
@@ -107,31 +108,24 @@ pub fn read_thresholds(file: &Path) -> Result<Thresholds, InputError> {
 
 /// The JSON schema (draft 7) of a file of thresholds, for editors.
 pub fn thresholds_schema() -> Value {
-    let line = json!({ "type": "string", "minLength": 1, "maxLength": 200 });
-    let like: Vec<&str> = Thresholds::all().iter().map(|set| &*set.name).collect();
-    let mut properties = Map::new();
-    properties.insert("name".to_owned(), line.clone());
-    properties.insert("source".to_owned(), line);
-    properties.insert("like".to_owned(), json!({ "enum": like }));
-    let numbers = NUMBERS.iter().map(|(key, range, _)| (key, range, "number"));
-    let counts = COUNTS.iter().map(|(key, range, _)| (key, range, "integer"));
+    let about = "docs/reference/rules.md says what each key means; with 'like' absent keys are \
+                 those of a published set";
+    let like: Vec<_> = Thresholds::all().iter().map(|s| (&*s.name, ())).collect();
+    let numbers = NUMBERS.iter().map(|(key, range, _)| (*key, number(*range)));
+    let counts = COUNTS
+        .iter()
+        .map(|(key, range, _)| (*key, whole_number(*range)));
     let all: Vec<_> = numbers.chain(counts).collect();
-    properties.extend(all.iter().map(|(key, range, kind)| {
-        let limits = json!({ "type": kind, "minimum": range.low, "maximum": range.high });
-        ((**key).to_owned(), limits)
-    }));
-    let keys: Vec<_> = all.iter().map(|(key, ..)| key).collect();
-    json!({
-        "$schema": "http://json-schema.org/draft-07/schema#",
-        "title": "Thresholds of Searoom's compliance monitors",
-        "description": "docs/reference/rules.md says what each key means; with 'like' absent keys \
-                        are those of a published set",
-        "type": "object",
-        "required": ["name", "source"],
-        "anyOf": [{ "required": ["like"] }, { "required": keys }],
-        "additionalProperties": false,
-        "properties": properties,
-    })
+    let keys: Vec<&str> = all.iter().map(|(key, _)| *key).collect();
+    let table = Schema::table(about)
+        .with("$schema", "http://json-schema.org/draft-07/schema#")
+        .with("title", "Thresholds of Searoom's compliance monitors")
+        .with("anyOf", having(&[&["like"], &keys]))
+        .require("name", line_of_text(), "")
+        .require("source", line_of_text(), "")
+        .optional("like", choice(&like), "");
+    let add = |table: Schema, (key, value)| table.optional(key, value, "");
+    all.into_iter().fold(table, add).finish()
 }
 
 /// [`read_thresholds`] of a text.
