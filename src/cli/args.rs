@@ -19,7 +19,7 @@ use searoom::scenario::{Compliance, Fault, Scenario};
 
 use super::campaign::CampaignArgs;
 use super::input::rows;
-use super::output::products::Wanted;
+use super::output::products::{STDOUT, Wanted};
 use super::shell::schema_kinds;
 use super::status::ExitStatus;
 
@@ -545,6 +545,9 @@ impl Written {
             drawn: self.drawn.options(&self.times, self.panels),
             plans: None,
             report: self.report.as_deref(),
+            files: { self.json.then_some(("--json", Path::new(STDOUT))) }
+                .into_iter()
+                .collect(),
         })
     }
 }

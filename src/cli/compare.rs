@@ -42,10 +42,14 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
     args.tables.prepare(&args.paths)?;
     let all = scenes::open(&args.paths, &args.assumed, output);
     // one figure of all scenarios
-    let wanted = Wanted {
+    let mut wanted = Wanted {
         figures: None,
         ..args.written.wanted()?
     };
+    wanted.files.extend(args.tables.files());
+    wanted
+        .files
+        .extend(figure.map(|figure| ("--figure", figure)));
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let asked = all.into_iter().map(|scene| ask(&scene?, args));
     let mut asked: Vec<Result<Compared, Refused>> = asked.collect();
@@ -61,8 +65,7 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
         status = status.max(compared.as_ref().map_or(ExitStatus::Good, Compared::status));
     }
     let documents: Vec<_> = asked.iter().map(document).collect();
-    let read = documents.iter().filter(|document| document.error.is_none());
-    let tables: Vec<ResultTable> = read.map(comparison_table).collect();
+    let tables: Vec<ResultTable> = documents.iter().map(comparison_table).collect();
     status = status.max(args.tables.write(&tables, output));
     if let Some(figure) = figure {
         match draw(figure, args, &asked) {
@@ -89,7 +92,9 @@ pub fn compare(args: &CompareArgs, output: &Output) -> anyhow::Result<ExitStatus
             comparisons: documents,
         }),
         false => {
-            let texts = tables.iter().map(|table| table.text(output.display));
+            // the errors say all of files that hold no scenario
+            let read = asked.iter().zip(&tables).filter(|(asked, _)| asked.is_ok());
+            let texts = read.map(|(_, table)| table.text(output.display));
             output.result(&texts.collect::<Vec<_>>().join("\n\n"))
         }
     };

@@ -30,8 +30,12 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let scene = scenes::open_one(&args.scenario, &args.assumed, output);
     let scene = scene.map_err(anyhow::Error::msg)?;
     let found = std::slice::from_ref(&scene.found);
-    let products = Products::prepare(found, args.shared.written.wanted()?)?;
+    let mut wanted = args.shared.written.wanted()?;
     let route = args.route.as_deref().map(Route::at).transpose()?;
+    wanted
+        .files
+        .extend(route.as_ref().map(|route| ("--route", route.file)));
+    let products = Products::prepare(found, wanted)?;
     let previous = args.previous.as_ref();
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));
     let previous = previous.transpose().map_err(anyhow::Error::msg)?;

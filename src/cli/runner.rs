@@ -12,7 +12,7 @@ use searoom::pipeline::{self, Run};
 use searoom::replanning::{PreviousPlan, remember};
 use searoom::scenario::import::Imported;
 use searoom::scenario::{Fault, Scenario, ScenarioError};
-use searoom::verification::verified_plan;
+use searoom::verification::{is_simulation, verified_plan};
 
 use super::args::Shared;
 use super::found::Refused;
@@ -79,6 +79,19 @@ fn message(payload: &(dyn Any + Send)) -> &str {
     }
 }
 
+/// The command that writes a document of several plans.
+fn writer(text: &str) -> Option<&'static str> {
+    if is_simulation(text) {
+        return Some("simulate");
+    }
+    let document: serde_json::Value = serde_json::from_str(text).ok()?;
+    let keys = [("comparisons", "compare"), ("runs", "suite")];
+    let known = keys
+        .into_iter()
+        .find(|(key, _)| document.get(key).is_some());
+    known.map(|(_, command)| command)
+}
+
 pub struct Previous {
     pub file: PathBuf,
     pub plan: PlanDocument,
@@ -92,6 +105,13 @@ impl Previous {
         let text = files::text(file, PLAN_MEBIBYTES, "a plan document");
         let text = text.map_err(|error| error.to_string())?;
         let file = files::name(file);
+        if let Some(command) = writer(&text) {
+            let file = file.display();
+            return Err(format!(
+                "{file}: found the document of `{command}`; allowed: that of a plan, as `plan --json` \
+                 and `simulate --plans` write it"
+            ));
+        }
         let plan = verified_plan(&text);
         let plan = plan.map_err(|error| format!("{}: {error}", file.display()))?;
         Ok(Self { file, plan, ignore })

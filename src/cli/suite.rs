@@ -50,10 +50,11 @@ pub fn suite(args: &SuiteArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     if args.lint {
         return Ok(lint::suite(all, args, output));
     }
-    let wanted = Wanted {
+    let mut wanted = Wanted {
         plans: args.plans.as_deref(),
         ..args.shared.written.wanted()?
     };
+    wanted.files.extend(args.tables.files());
     args.tables.prepare(&args.paths)?;
     let products = Products::prepare(&scenes::found(&all), wanted)?;
     let bar = output.progress(all.len());

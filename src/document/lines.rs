@@ -573,10 +573,14 @@ fn manoeuvre_text(manoeuvre: &ManoeuvreDocument, times: Times) -> String {
     }
     let first = match manoeuvre.lead_s {
         None => "no alteration".to_owned(),
-        // without a negative zero
         Some(lead) => {
-            let lead = times.at(lead.round() + 0.0, 0);
-            format!("first alteration {lead} before the closest approach on the course before it")
+            let when = if lead.round() < 0.0 {
+                "after"
+            } else {
+                "before"
+            };
+            let lead = times.at(lead.round().abs(), 0);
+            format!("first alteration {lead} {when} the closest approach on the course before it")
         }
     };
     let turns = counted(manoeuvre.turns, "turn");
@@ -782,6 +786,26 @@ mod tests {
     use crate::colregs::compliance::Monitor;
     use crate::pipeline;
     use crate::scenario::Scenario;
+
+    #[test]
+    fn an_alteration_after_the_closest_approach_says_so() {
+        let text = |lead| {
+            let manoeuvre = ManoeuvreDocument {
+                lead_s: Some(lead),
+                turns: 1,
+                smallest_turn_deg: None,
+                speed_changes: 0,
+            };
+            manoeuvre_text(&manoeuvre, Times::Seconds)
+        };
+        let begins = ["after 308 s", "before 308 s", "before 0 s"].map(|words| {
+            let (side, time) = words.split_once(' ').expect("two words");
+            format!("first alteration {time} {side} the closest approach")
+        });
+        for (lead, begin) in [-308.2, 308.2, -0.2].into_iter().zip(begins) {
+            assert!(text(lead).starts_with(&begin), "{}", text(lead));
+        }
+    }
 
     #[test]
     fn monitors_are_told_in_words() {

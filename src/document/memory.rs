@@ -77,9 +77,13 @@ impl TryFrom<&PlanDocument> for PreviousPlan {
         let documents = plan.trajectory.iter().flat_map(|t| &t.segments).flatten();
         let segments: Vec<Segment> = documents.map(SegmentDocument::segment).collect();
         if segments.is_empty() || !segments.iter().all(Segment::is_valid) {
+            let found = match &plan.trajectory {
+                None => format!("no trajectory: the outcome is {}", plan.outcome),
+                Some(_) => "no lines and arcs: a plan under forces".to_owned(),
+            };
             return Err(Fault::new(
                 "trajectory.segments",
-                "nothing",
+                found,
                 "lines and arcs: a plan of the space-time or path-time planner",
             ));
         }

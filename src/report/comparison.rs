@@ -6,6 +6,7 @@ use super::table::{
 };
 use crate::document::{
     CollisionDocument, CostDocument, Departure, EntryDocument, ScenarioComparisonDocument,
+    SuiteOutcome,
 };
 use crate::evaluation::risk_figure;
 use crate::obstacle::LAND;
@@ -16,12 +17,13 @@ pub(super) fn is_sweep(entries: &[EntryDocument]) -> bool {
 }
 
 /// Names in tables and keys in data of the columns of a comparison.
-const COLUMNS: [(&str, &str); 24] = [
+const COLUMNS: [(&str, &str); 25] = [
     ("", "file"),
     ("", "scenario"),
     ("method", "method"),
     ("accepted\nrisk", "max_risk"),
     ("outcome", "outcome"),
+    ("", "verdict"),
     ("", "arrived"),
     ("manoeuvre", ""),
     ("", "largest_turn_deg"),
@@ -44,10 +46,13 @@ const COLUMNS: [(&str, &str); 24] = [
 ];
 
 /// The table of one scenario: a row for each method, in a sweep for each accepted risk of it. The
-/// remarks explain the columns, missing motions and the methods that do not apply.
+/// remarks explain the columns, missing motions and the methods that do not apply. A file without a
+/// comparison has one row.
 pub fn comparison_table(compared: &ScenarioComparisonDocument) -> ResultTable {
     let entries = &compared.entries;
-    let rows = entries.iter().map(|entry| row(compared, entry)).collect();
+    let failed = compared.error.iter().map(|error| failed(compared, error));
+    let rows = entries.iter().map(|entry| row(compared, entry));
+    let rows = rows.chain(failed).collect();
     let mut table = ResultTable::new(&COLUMNS, rows)
         .titled(compared.scenario.as_deref().unwrap_or(&compared.file))
         .showing(|grid| grid.breaking_last("method", 22).breaking_last("breaks", 9));
@@ -72,6 +77,19 @@ fn departure(entry: &EntryDocument) -> String {
     }
 }
 
+/// The row of a file that yields no comparison.
+fn failed(compared: &ScenarioComparisonDocument, error: &str) -> Vec<Field> {
+    let word = SuiteOutcome::Unreadable.word();
+    let field = |(_, key): &(&str, &str)| match *key {
+        "file" => datum(&compared.file),
+        "outcome" => both(verdict(word), word),
+        "verdict" => datum(word),
+        "reason" => datum(error),
+        _ => both(or_dash(None), ""),
+    };
+    COLUMNS.iter().map(field).collect()
+}
+
 fn row(compared: &ScenarioComparisonDocument, entry: &EntryDocument) -> Vec<Field> {
     let cost = entry.cost.as_ref();
     let of = |value: fn(&CostDocument) -> f64| cost.map(value);
@@ -93,7 +111,8 @@ fn row(compared: &ScenarioComparisonDocument, entry: &EntryDocument) -> Vec<Fiel
         both(plain(&entry.method), &entry.method),
         number(Some(entry.max_risk), |risk| risk.to_string()),
         both(verdict(&entry.verdict), entry.outcome.to_string()),
-        datum(cost.is_some_and(|c| c.arrived).to_string()),
+        datum(&entry.verdict),
+        datum(cost.map_or(String::new(), |c| c.arrived.to_string())),
         both(or_dash(cost.map(|_| departure(entry))), ""),
         degrees,
         side,

@@ -27,11 +27,12 @@ pub(super) const CLEARANCE: &str =
     "clearance: own hull to any hull that a target may have, or own position to an explicit set";
 
 /// Names in tables and keys in data of the columns of a suite.
-const COLUMNS: [(&str, &str); 23] = [
+const COLUMNS: [(&str, &str); 24] = [
     ("", "file"),
     ("scenario", "scenario"),
     ("", "planner"),
     ("outcome", "outcome"),
+    ("", "verdict"),
     ("", "arrived"),
     ("encounter", "roles"),
     ("manoeuvre", ""),
@@ -133,7 +134,8 @@ fn suite_row(run: &SuiteRunDocument, name: String) -> Vec<Field> {
         ),
         datum(run.planner.clone().unwrap_or_default()),
         both(verdict(&run.verdict), run.outcome.to_string()),
-        datum(cost.is_some_and(|c| c.arrived).to_string()),
+        datum(&run.verdict),
+        datum(cost.map_or(String::new(), |c| c.arrived.to_string())),
         both(or_dash(roles), each_role.join(" ")),
         both(or_dash(cost.map(|_| manoeuvre(run.departure))), ""),
         degrees,

@@ -255,10 +255,17 @@ impl Grid {
     }
 }
 
+/// A text for a cell of Markdown: no character of it is markup, or ends the cell.
 pub(super) fn in_cell(text: &str) -> String {
-    // a backslash before a bar would escape itself, and end the cell
-    let text = text.replace('\\', "\\\\").replace('|', "\\|");
-    text.replace(['\n', '\r'], " ")
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\\' | '|' | '<' | '*' | '_' | '`' => escaped.extend(['\\', c]),
+            '\n' | '\r' => escaped.push(' '),
+            _ => escaped.push(c),
+        }
+    }
+    escaped
 }
 
 /// A text for LaTeX in any font encoding: no character of it is a command.

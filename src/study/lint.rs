@@ -113,7 +113,9 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
         && scenario.stay.is_none()
         && targets.iter().all(|t| t.matters != Matters::Meets)
     {
-        findings.push("no target in the way: own ship may hold its course".to_owned());
+        findings.push(
+            "no hard set in the way: with hulls alone own ship may hold its course".to_owned(),
+        );
     }
     findings
 }

@@ -71,6 +71,9 @@ fn a_comparison_has_a_line_for_each_method_in_160_columns() {
 /// Cells of a line of Markdown.
 fn markdown_cells(line: &str) -> Vec<String> {
     let line = line.replace("\\\\", "\u{1}").replace("\\|", "\u{0}");
+    let line = ["<", "*", "_", "`"]
+        .iter()
+        .fold(line, |line, c| line.replace(&format!("\\{c}"), c));
     let cells = line.trim_matches('|').split('|');
     cells
         .map(|cell| cell.trim().replace('\u{0}', "|").replace('\u{1}', "\\"))
@@ -244,8 +247,8 @@ fn a_table_needs_the_name_of_a_file() {
         "
         suite DIR/in.toml --quiet --csv DIR/in.toml | --csv: DIR/in.toml: a scenario file
         compare DIR --quiet --md DIR/./in.toml | a scenario file, which would be overwritten
-        suite DIR --quiet --csv DIR/a --md DIR/a | --md: DIR/a: the file of --csv, too; name another
-        suite DIR --quiet --csv DIR/a --tex DIR/./a | --tex: DIR/./a: the file of --csv, too
+        suite DIR --quiet --csv DIR/a --md DIR/a | --md: DIR/a: written by --csv, too; name another
+        suite DIR --quiet --csv DIR/a --tex DIR/./a | --tex: DIR/./a: written by --csv, too
         ",
     );
     let kept = fs::read_to_string(folder.at("in.toml")).expect("the scenario");
@@ -257,4 +260,65 @@ fn a_table_needs_the_name_of_a_file() {
         "{printed}"
     );
     assert_eq!(printed.lines().count(), 1 + 4);
+}
+
+/// No option writes what another one writes, in a folder or on standard output.
+#[test]
+fn two_outputs_are_two_files() {
+    let folder = Folder::new();
+    let scenario = "scenarios/colregs/head-on.toml";
+    let table = "
+        suite HEAD_ON --plans DIR/pl --csv DIR/pl/head-on.json | --plans: DIR/pl/head-on.json: written by --csv, too
+        suite HEAD_ON --md DIR/x.svg --figure DIR/x.svg | --figure: DIR/x.svg: written by --md, too; name another
+        compare HEAD_ON --md DIR/x.svg --figure DIR/x.svg | --figure: DIR/x.svg: written by --md, too
+        suite HEAD_ON --report DIR/r --md DIR/r/index.html | --report: DIR/r/index.html: written by --md, too
+        suite HEAD_ON --json --csv /dev/stdout | --csv: /dev/stdout: written by --json, too
+        compare HEAD_ON --json --md /dev/stdout | --md: /dev/stdout: written by --json, too
+        ";
+    let table = table.replace("HEAD_ON", scenario);
+    folder.refuses(&table);
+    // results beside one another are no clash
+    let [all, csv] = ["all", "all/rows.csv"].map(|name| folder.at(name));
+    let words = [
+        "suite", scenario, "--plans", &all, "--report", &all, "--csv", &csv,
+    ];
+    command(&[&words[..], &["--figure", &format!("{all}/"), "--json"]].concat())
+        .assert()
+        .success();
+}
+
+/// A file that cannot be read has a row with its fault, and no values.
+#[test]
+fn a_broken_file_has_a_row() {
+    let folder = Folder::new();
+    let broken = folder.write("broken.toml", "horizon_s = 1.0");
+    let csv = folder.at("rows.csv");
+    for asked in ["suite", "compare --planner path-time"] {
+        let words = format!("{asked} {broken} scenarios/colregs/head-on.toml --csv {csv}");
+        run(&words).code(2);
+        let mut records = csv::Reader::from_path(&csv).expect("rows");
+        let names = records.headers().expect("columns").clone();
+        let rows: Vec<_> = records.records().map(|row| row.expect("a row")).collect();
+        let of = |row: usize, name: &str| {
+            let column = names.iter().position(|n| n == name).expect("a column");
+            rows[row][column].to_owned()
+        };
+        assert_eq!(of(0, "file"), broken);
+        assert_eq!([of(0, "outcome"), of(0, "verdict")], ["unreadable"; 2]);
+        says(&of(0, "reason"), "broken.toml: ");
+        assert_eq!([of(0, "arrived"), of(0, "safe")], [""; 2]);
+        assert!(["true", "false"].contains(&of(1, "arrived").as_str()));
+        assert_ne!(of(1, "verdict"), "");
+    }
+}
+
+#[test]
+fn a_name_is_no_markup_in_markdown() {
+    let folder = Folder::new();
+    let title = "<b>*a*_b_`c`|d";
+    let file = HEAD_ON.replace("\"Head-on\"", &format!("'{title}'"));
+    let (file, md) = (folder.write("_a_.toml", file), folder.at("a.md"));
+    run(&format!("compare {file} --md {md} --planner path-time")).code(1);
+    let text = fs::read_to_string(&md).expect("a table");
+    says(&text, "# \\<b>\\*a\\*\\_b\\_\\`c\\`\\|d\n");
 }

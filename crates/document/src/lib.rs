@@ -37,6 +37,7 @@ pub use parts::*;
 pub use plan::control::*;
 pub use plan::departure::{
     Departure, LEAST_DEG as LEAST_DEPARTURE_DEG, SailedManoeuvreDocument, departure, manoeuvres,
+    until as departure_until,
 };
 pub use plan::motions::{PlannedLeg, STILL_MPS, is_same_motion};
 pub use plan::path_time::*;

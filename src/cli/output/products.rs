@@ -1,5 +1,6 @@
 //! Output files of a command: recordings, figures and plan documents.
 
+use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -45,6 +46,8 @@ pub struct Wanted<'a> {
     pub drawn: FigureOptions,
     pub plans: Option<&'a Path>,
     pub report: Option<&'a Path>,
+    /// Other files that the command writes, each with its option.
+    pub files: Vec<(&'static str, &'a Path)>,
 }
 
 #[derive(Debug)]
@@ -63,6 +66,7 @@ impl Products {
             drawn,
             plans,
             report,
+            files,
         } = wanted;
         if recordings.is_some() && !cfg!(feature = "recording") {
             bail!(
@@ -93,6 +97,24 @@ impl Products {
                 place(option, folder, false, "")?;
             }
         }
+        let mut outputs: Vec<_> = { files.into_iter() }
+            .map(|(option, file)| (option, file.to_owned()))
+            .collect();
+        for found in found {
+            let stem = &found.stem;
+            let file = |place: &Option<Place>, ending| Some(place.as_ref()?.file(stem, ending));
+            let named =
+                |folder: Option<&Path>, ending| Some(folder?.join(format!("{stem}{ending}")));
+            let of_scenario = [
+                ("--rrd", file(&recordings, "rrd")),
+                ("--figure", file(&figures, "svg")),
+                ("--plans", named(plans, ".json")),
+                ("--report", named(report, "-1.svg")),
+            ];
+            outputs.extend({ of_scenario.into_iter() }.filter_map(|(o, file)| Some((o, file?))));
+        }
+        outputs.extend(report.map(|folder| ("--report", folder.join("index.html"))));
+        refuse_overlaps(outputs)?;
         Ok(Self {
             stems: found.iter().map(|found| found.stem.clone()).collect(),
             recordings,
@@ -307,7 +329,7 @@ pub fn prepare_figure(path: &Path) -> anyhow::Result<()> {
 }
 
 impl TableFiles {
-    fn files(&self) -> impl Iterator<Item = (&'static str, &PathBuf)> {
+    pub fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
         let files = [
             ("--csv", &self.csv),
             ("--md", &self.md),
@@ -315,17 +337,16 @@ impl TableFiles {
         ];
         files
             .into_iter()
-            .filter_map(|(option, file)| Some((option, file.as_ref()?)))
+            .filter_map(|(option, file)| Some((option, file.as_deref()?)))
     }
 
-    /// Rejects what names no file, one that another option names, and one of the paths that are `read`, and
-    /// creates the folders of the files.
+    /// Rejects what names no file and one of the paths that are `read`, and creates the folders of the
+    /// files.
     pub fn prepare(&self, read: &[PathBuf]) -> anyhow::Result<()> {
         let inputs: Vec<PathBuf> = read
             .iter()
             .filter_map(|path| path.canonicalize().ok())
             .collect();
-        let mut taken: Vec<(&str, PathBuf)> = Vec::new();
         for (option, file) in self.files() {
             if file.as_os_str() == "-" {
                 bail!("{option}: found -; allowed: a file, or /dev/stdout for standard output");
@@ -339,11 +360,6 @@ impl TableFiles {
                     "{option}: {file}: a scenario file, which would be overwritten; name another"
                 );
             }
-            if let Some((other, _)) = taken.iter().find(|(_, of)| *of == place) {
-                let file = file.display();
-                bail!("{option}: {file}: the file of {other}, too; name another");
-            }
-            taken.push((option, place));
         }
         Ok(())
     }
@@ -371,6 +387,26 @@ impl TableFiles {
         }
         status
     }
+}
+
+/// Standard output, as the file that other options may name.
+pub const STDOUT: &str = "/dev/stdout";
+
+/// Rejects two options that write the same file.
+fn refuse_overlaps(outputs: Vec<(&'static str, PathBuf)>) -> anyhow::Result<()> {
+    let mut taken: HashMap<PathBuf, &str> = HashMap::new();
+    for (option, file) in outputs {
+        let at = place(&file);
+        // a device keeps nothing
+        if at == Path::new("/dev/null") {
+            continue;
+        }
+        if let Some(other) = taken.insert(at, option) {
+            let file = file.display();
+            bail!("{option}: {file}: written by {other}, too; name another");
+        }
+    }
+    Ok(())
 }
 
 /// Where a file is, or will be in a folder that exists: links and `..` lead there, too.

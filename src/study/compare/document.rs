@@ -6,8 +6,8 @@ use super::{ComparedMotion, Entry, Inapplicable};
 use crate::colregs::compliance::EncounterSamples;
 use crate::document::{
     CandidateOutcome, CollisionDocument, Compared, EntryDocument, HeldVelocityDocument,
-    InapplicableDocument, PositionDocument, TrackPointDocument, cost_of, departure, finite,
-    minimised, objective, samples, search_stats, timing,
+    InapplicableDocument, PositionDocument, TrackPointDocument, cost_of, departure,
+    departure_until, finite, minimised, objective, samples, search_stats, timing,
 };
 use crate::evaluation::{Safety, least_land_distance, outcome_word, without_rules};
 use crate::frame::course_deg_from_heading;
@@ -53,8 +53,14 @@ impl Compared<Entry, Inapplicable> for Scenario {
         };
         let is_along_path = run.is_some_and(|run| run.planned.path_time.is_some());
         let radius = scenario.own_ship.turning_radius;
-        let departure = entry.trajectory().and_then(|motion| {
-            departure(&samples(motion), &scenario.desired, radius, is_along_path)
+        let is_forced = run.is_some_and(|run| run.planned.control.is_some());
+        let departure = motion.and_then(|motion| {
+            let samples = samples(&motion.trajectory);
+            let counted = match is_forced {
+                true => departure_until(&samples, motion.evaluation.counted.until),
+                false => &samples,
+            };
+            departure(counted, &scenario.desired, radius, is_along_path)
         });
         let conduct = entry.conduct(scenario);
         let broken: BTreeSet<&str> = conduct.iter().flat_map(|c| c.broken()).collect();

@@ -1,6 +1,6 @@
 //! A plan that goes on from the previous one.
 
-use crate::program::{Folder, HEAD_ON, document, json, list, number, rows, searoom};
+use crate::program::{Folder, HEAD_ON, document, json, list, number, rows, searoom, stdout};
 use predicates::str::{contains, is_empty};
 use serde_json::Value;
 
@@ -203,4 +203,38 @@ fn a_previous_plan_that_does_not_fit_is_named() {
     let refused = searoom(&["plan", &file, "--previous", &altered]).code(2);
     refused.stderr(contains("not a plan that verifies"));
     searoom(&["plan", &file, "--previous", "none.json"]).code(2);
+}
+
+#[test]
+fn a_document_without_a_plan_is_no_previous_plan() {
+    let folder = Folder::new();
+    let head_on = "scenarios/colregs/head-on.toml";
+    let refused = |name: &str, words: &str, said: &str| {
+        let words: Vec<&str> = words.split(' ').chain([head_on, "--json"]).collect();
+        let file = folder.write(name, stdout(&searoom(&words)));
+        let refused = searoom(&["plan", head_on, "--previous", &file]).code(2);
+        refused.stderr(contains(said));
+    };
+    refused(
+        "a.json",
+        "simulate --duration-s 20",
+        "found the document of `simulate`; allowed: that",
+    );
+    refused(
+        "b.json",
+        "compare --planner path-time",
+        "found the document of `compare`; allowed: ",
+    );
+    refused(
+        "c.json",
+        "suite",
+        "found the document of `suite`; allowed: that of a plan, as",
+    );
+    let short = HEAD_ON.replace("horizon_s = 400.0", "horizon_s = 40.0");
+    let short = folder.write("short.toml", short);
+    let none = folder.write("none.json", stdout(&searoom(&["plan", &short, "--json"])));
+    let said =
+        "trajectory.segments: found no trajectory: the outcome is infeasible; allowed: lines";
+    let refused = searoom(&["plan", head_on, "--previous", &none]).code(2);
+    refused.stderr(contains(said));
 }

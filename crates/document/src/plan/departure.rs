@@ -44,6 +44,16 @@ const TURN_RAD: f64 = 1e-4;
 /// Fraction by which a turn between two samples may seem faster than the turning radius allows.
 const FASTER: f64 = 0.05;
 
+/// Degrees that decide how a turn is judged: the least turn of a manoeuvre, and a large one.
+const LIMITS_DEG: [f64; 2] = [30.0, 90.0];
+
+/// Whole degrees, with a tenth where they would hide that a turn is below a limit.
+pub(crate) fn turn_figure(degrees: f64) -> String {
+    let hides = |limit: f64| degrees.round() == limit && degrees < limit - 0.05;
+    let digits = usize::from(degrees < 0.5 || LIMITS_DEG.into_iter().any(hides));
+    format!("{degrees:.digits$}")
+}
+
 /// Greatest departure of a motion from the desired course, or else from the desired speed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "kind", rename_all = "lowercase")]
@@ -93,7 +103,7 @@ impl Departure {
     /// Side and degrees, with a wait its duration, or the speed.
     pub fn brief(&self) -> String {
         match *self {
-            Self::Course { side, turn_deg, .. } => format!("{side} {turn_deg:.0}°"),
+            Self::Course { side, turn_deg, .. } => format!("{side} {}°", turn_figure(turn_deg)),
             Self::Waits { for_s, .. } => format!("waits {for_s:.0} s"),
             Self::Speed {
                 slower, speed_mps, ..
@@ -131,8 +141,18 @@ impl PlanDocument {
         let desired = DesiredTrajectory::new(&points, &self.mission.leg_speeds_mps).ok()?;
         let radius = self.own_ship.turning_radius_m;
         let samples = &self.trajectory.as_ref()?.samples;
+        let samples = match (&self.optimal_control, &self.cost) {
+            (Some(_), Some(cost)) => until(samples, cost.space_time_error_until_s),
+            _ => samples,
+        };
         departure(samples, &desired, radius, self.path_time.is_some())
     }
+}
+
+/// Samples of a motion under forces while its space-time error is counted. Afterwards own ship drifts
+/// about the last waypoint, on any course.
+pub fn until(samples: &[SampleDocument], end_s: f64) -> &[SampleDocument] {
+    &samples[..samples.partition_point(|sample| sample.t_s <= end_s)]
 }
 
 /// Departure of a sampled motion from the desired trajectory. At a corner, every course between
@@ -220,7 +240,8 @@ impl Turn {
     fn departure(&self) -> Departure {
         Departure::Course {
             side: self.side,
-            turn_deg: self.degrees,
+            // beyond the opposite course the departure is less again
+            turn_deg: self.degrees.min(180.0),
             from_s: self.from,
         }
     }
@@ -404,6 +425,26 @@ mod tests {
         let desired = DesiredTrajectory::new(&points, &speeds).expect("a path");
         let found = departure(&sailed(parts), &desired, 30.0, false);
         found.map_or("none".to_owned(), |found| found.to_string())
+    }
+
+    #[test]
+    fn a_turn_below_a_limit_is_not_shown_as_one_at_it() {
+        let figures = [89.73, 89.98, 90.4, 88.7, 29.6, 0.4].map(turn_figure);
+        assert_eq!(figures, ["89.7", "90", "90", "89", "29.6", "0.4"]);
+    }
+
+    /// A full circle departs by no more than the opposite course, and what a motion does after its
+    /// end is no departure.
+    #[test]
+    fn a_circle_is_a_departure_of_half_a_turn_until_the_end() {
+        let circle = (1..36).map(|k| (2, f64::from(90 + 10 * k) % 360.0, 5.0));
+        let parts: Vec<_> = std::iter::once((100, 90.0, 5.0)).chain(circle).collect();
+        let all = sailed(&parts);
+        let points = [(0.0, 0.0), (2000.0, 0.0)].map(|(x, y)| Vector::new(x, y));
+        let desired = DesiredTrajectory::new(&points, &[5.0]).expect("a path");
+        let brief = |samples| departure(samples, &desired, 30.0, false).map(|found| found.brief());
+        assert_eq!(brief(&all), Some("starboard 180°".to_owned()));
+        assert_eq!(brief(until(&all, 99.0)), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The motion of a plan as turns and straight runs.
 
 use super::PlanDocument;
+use super::departure::turn_figure;
 use crate::parts::SegmentDocument;
 use searoom_geometry::frame::{clockwise_deg, course_deg_from_heading, wrap};
 use searoom_input::text::tenths;
@@ -53,7 +54,7 @@ impl PlannedLeg {
         let sided = |turn: f64| {
             let side = if turn > 0.0 { "starboard" } else { "port" };
             let shown = turn.abs() >= LEAST_TURN_DEG;
-            shown.then(|| format!("{side} {:.*}°", usize::from(turn.abs() < 0.5), turn.abs()))
+            shown.then(|| format!("{side} {}°", turn_figure(turn.abs())))
         };
         match (sided(self.corner_deg), sided(self.turn_deg())) {
             _ if self.waits() => Some("waits".to_owned()),
