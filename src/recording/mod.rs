@@ -8,6 +8,9 @@
 //! - `read`: one file → entities, tables, documents
 //! - `checksum`: how a cut or damaged file is detected
 //!
+//! What plans, comparisons and simulations log alike is described once: ships and the kinds of sets
+//! in `views/ships`, plots in `views/curves`. The panels of plots follow from these descriptions.
+//!
 //! The only timeline is `sim_time`: seconds from the start of the scenario, as a duration.
 //! Positions are metres east and north. Entities that do not move are static, and so are colours
 //! and names. Without a plan the desired motion is shown in its place and named so.

@@ -2,7 +2,7 @@
 
 use rerun::{Color, LineStrips2D};
 
-use super::{Canvas, flat, labelled, style};
+use super::{Canvas, flat, labelled, lines, style};
 use crate::frame::Vector;
 use crate::geometry::Window;
 use crate::labels::{Drawn, Label, Needed};
@@ -179,8 +179,5 @@ fn half_size(text: &str) -> Vector {
 
 /// Thin lines from positions to labels that are not close to them.
 pub fn leader_style() -> LineStrips2D {
-    LineStrips2D::update_fields()
-        .with_colors([style::CHART_TEXT])
-        .with_radii([style::points(0.5)])
-        .with_draw_order(50.0)
+    lines(style::CHART_TEXT, 0.5).with_draw_order(50.0)
 }

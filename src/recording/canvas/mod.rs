@@ -12,7 +12,7 @@ pub use closed_loop::{AssumedTarget, ClosedLoop};
 #[cfg(test)]
 pub use labels::covered;
 pub use labels::{Labels, leader_style};
-pub use lines::{Lines, labelled};
+pub use lines::{Lines, Strip, labelled, lines, points, strip_columns};
 pub use motion::{ShownMotion, desired_leg};
 pub use view_model::ViewModel;
 

@@ -20,12 +20,9 @@ use rerun::external::re_sdk_types::blueprint::views::{
 use panes::{Pane, Panes};
 
 use crate::frame::{Vector, to_starboard};
-use crate::recording::canvas::{Canvas, ClosedLoop, ViewModel, style};
+use crate::recording::canvas::{Canvas, ViewModel, style};
 use crate::recording::recorder::Recorder;
-use crate::recording::views::closed_loop::{OFF_PLAN, PLANNING};
-use crate::recording::views::curves::{
-    self, CLEARANCE, COURSE, FORCES, MARGIN, RISK, SPEED, STATES,
-};
+use crate::recording::views::curves::Plot;
 use crate::recording::views::explored::BLOCKED;
 use crate::recording::views::velocities;
 use crate::recording::{
@@ -36,14 +33,9 @@ use crate::recording::{
 /// How long it takes to play the whole run, seconds.
 const PLAY_S: f64 = 25.0;
 
-/// Lays out a run with so many lanes of rules, with or without legs, and with the least clearance
-/// and margin in metres.
-pub fn of_run(
-    model: &ViewModel,
-    lanes: usize,
-    has_legs: bool,
-    [clearance, margin]: [f64; 2],
-) -> Logged<Recorder> {
+/// Lays out a run with so many lanes of rules, with or without legs, and with its plots, those of
+/// distances first.
+pub fn of_run(model: &ViewModel, lanes: usize, has_legs: bool, plots: &[Plot]) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let mut chart = chart_view(to, model)?;
@@ -52,46 +44,19 @@ pub fn of_run(
         let map = to.view::<MapView>("Map", EARTH)?;
         chart = to.tabs(&[chart, map])?;
     }
-    let mut left = vec![chart];
-    let mut left_shares = vec![0.66];
-    if let Some((rules, share)) = rules_view(to, model, lanes)? {
-        left.push(rules);
-        left_shares = vec![0.66 - share, share];
-    }
     let mut words = to.view::<TextDocumentView>("Verdict", SUMMARY)?;
     if has_legs {
         let legs = to.view::<TextDocumentView>("Legs", LEGS)?;
         words = to.tabs(&[words, legs])?;
     }
-    left.push(words);
-    left_shares.push(0.34);
-    let left = to.below(&left, left_shares)?;
+    let left = chart_over(to, model, [(chart, 0.66), (words, 0.34)], lanes)?;
     let volume = volume_view(to, model, path(&[VOLUME, "explored", BLOCKED]))?;
-    let [_, top] = model.near(clearance);
-    let names = ["Hull clearance", "Set margin"].map(|what| format!("{what} up to {top} m"));
-    let distances = [(&*names[0], CLEARANCE), (&*names[1], MARGIN)];
-    let mut plots = vec![("Speed (kn)", SPEED), ("Course (deg)", COURSE)];
-    if curves::has_risk(model) {
-        plots.push(("Risk", RISK));
-    }
-    if curves::steered(model).is_some() {
-        let of_forces = [
-            ("Velocity (m/s, deg/s)", STATES),
-            ("Forces (N, Nm)", FORCES),
-        ];
-        plots.extend(of_forces);
-    }
     let velocities = velocity_view(to, model)?;
-    let volume = to.tabs(&[volume, velocities])?;
-    let distances = plot_views(to, model, &distances, legend_room(model))?;
-    for (plot, least) in distances.iter().zip([clearance, margin]) {
-        let axis = ScalarAxis::new().with_range([least.min(0.0).max(-top), top]);
-        to.set(plot, "ScalarAxis", &axis)?;
-    }
-    let small = plot_views(to, model, &plots, 0.7)?;
+    let mut right = vec![to.tabs(&[volume, velocities])?];
+    let (distances, others) = plots.split_at(2);
+    right.extend(plot_views(to, model, distances, legend_room(model))?);
+    let small = plot_views(to, model, others, 0.7)?;
     let rows = small.len().div_ceil(2) as f32;
-    let mut right = vec![volume];
-    right.extend(distances);
     right.push(to.grid(&small, 2)?);
     let right = to.below(&right, [0.4, 0.22, 0.19, 0.19 * rows])?;
     let root = to.beside(&[left, right], [0.54, 0.46])?;
@@ -99,19 +64,14 @@ pub fn of_run(
 }
 
 /// Lays out a comparison: chart and volume side by side, below them the table and the curves.
-pub fn of_comparison(canvas: &Canvas) -> Logged<Recorder> {
+pub fn of_comparison(canvas: &Canvas, plots: &[Plot]) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let chart = chart_view(to, canvas)?;
     let volume = volume_view(to, canvas, path(&[VOLUME, "explored"]))?;
     let pictures = to.beside(&[chart, volume], [0.5, 0.5])?;
     let table = to.view::<TextDocumentView>("Comparison", SUMMARY)?;
-    let plots = [
-        ("Distance from the nearest target (m)", CLEARANCE),
-        ("Speed (kn)", SPEED),
-    ];
-    let first = usize::from(canvas.scenario.targets.is_empty());
-    let curves = plot_views(to, canvas, &plots[first..], 0.5)?;
+    let curves = plot_views(to, canvas, plots, 0.5)?;
     let curves = to.below(&curves, [])?;
     let below = to.beside(&[table, curves], [0.56, 0.44])?;
     let root = to.below(&[pictures, below], [0.62, 0.38])?;
@@ -120,8 +80,7 @@ pub fn of_comparison(canvas: &Canvas) -> Logged<Recorder> {
 
 /// Lays out a simulation with so many lanes of rules: the chart over them and the events, beside
 /// them the summary over the curves.
-pub fn of_simulation(model: &ClosedLoop, lanes: usize) -> Logged<Recorder> {
-    let canvas = &model.canvas;
+pub fn of_simulation(canvas: &Canvas, lanes: usize, plots: &[Plot]) -> Logged<Recorder> {
     let mut layout = Panes::default();
     let to = &mut layout;
     let chart = chart_view(to, canvas)?;
@@ -133,39 +92,27 @@ pub fn of_simulation(model: &ClosedLoop, lanes: usize) -> Logged<Recorder> {
     });
     let columns = TextLogColumns::new().with_text_log_columns(shown);
     to.set(&events, "TextLogColumns", &columns)?;
-    let mut left = vec![chart];
-    let mut shares = vec![0.78];
-    if let Some((rules, share)) = rules_view(to, canvas, lanes)? {
-        left.push(rules);
-        shares = vec![0.78 - share, share];
-    }
-    left.push(events);
-    shares.push(0.22);
-    let left = to.below(&left, shares)?;
+    let left = chart_over(to, canvas, [(chart, 0.78), (events, 0.22)], lanes)?;
     let mut right = vec![to.view::<TextDocumentView>("Summary", SUMMARY)?];
-    let range = model.near_clearances();
-    let hulls = range.map_or(String::new(), |[_, top]| {
-        format!("Distance of the hulls up to {top} m")
-    });
-    let plots = [
-        (&*hulls, CLEARANCE),
-        ("Distance off the plan (m)", OFF_PLAN),
-        ("Time of planning (ms)", PLANNING),
-    ];
-    let first = usize::from(model.simulation.targets.is_empty());
-    let plots = plot_views(to, canvas, &plots[first..], legend_room(canvas))?;
-    if let Some(range) = range {
-        to.set(
-            &plots[0],
-            "ScalarAxis",
-            &ScalarAxis::new().with_range(range),
-        )?;
-    }
-    right.extend(plots);
+    right.extend(plot_views(to, canvas, plots, legend_room(canvas))?);
     let shares = [0.4, 0.24, 0.18, 0.18].into_iter().take(right.len());
     let right = to.below(&right, shares)?;
     let root = to.beside(&[left, right], [0.55, 0.45])?;
     layout.finished(&root, &time_panel(canvas))
+}
+
+/// The chart over another pane, each with its share of the height. Roles are between them, where
+/// there are any, in the share of the chart.
+fn chart_over(
+    to: &mut Panes,
+    canvas: &Canvas,
+    [(chart, share), (below, rest)]: [(Pane, f32); 2],
+    lanes: usize,
+) -> Logged<Pane> {
+    match rules_view(to, canvas, lanes)? {
+        Some((rules, part)) => to.below(&[chart, rules, below], [share - part, part, rest]),
+        None => to.below(&[chart, below], [share, rest]),
+    }
 }
 
 /// Paused at the start.
@@ -259,22 +206,23 @@ fn legend_room(canvas: &Canvas) -> f64 {
     share / (1.0 - share)
 }
 
-/// Plots over the whole time, by name and entity, with room for their legends beside the
-/// curves, as a part of the time.
-fn plot_views(
-    to: &mut Panes,
-    canvas: &Canvas,
-    plots: &[(&str, &str)],
-    room: f64,
-) -> Logged<Vec<Pane>> {
+/// The panels of plots over the whole time, with room for their legends beside the curves, as a
+/// part of the time.
+fn plot_views(to: &mut Panes, canvas: &Canvas, plots: &[Plot], room: f64) -> Logged<Vec<Pane>> {
     let legend = PlotLegend::new().with_corner(Corner2D::RightTop);
-    let plot = |(name, origin): &(&str, &str)| {
-        let view = to.view::<TimeSeriesView>(name, origin)?;
+    let titled = plots
+        .iter()
+        .filter_map(|plot| Some((plot, plot.title.as_ref()?)));
+    let panel = |(plot, title): (&Plot, &String)| {
+        let view = to.view::<TimeSeriesView>(title, plot.entity)?;
         to.set(&view, "PlotLegend", &legend)?;
         to.set(&view, "TimeAxis", &time_axis(canvas, room))?;
+        if let Some(range) = plot.range {
+            to.set(&view, "ScalarAxis", &ScalarAxis::new().with_range(range))?;
+        }
         Ok(view)
     };
-    plots.iter().map(plot).collect()
+    titled.map(panel).collect()
 }
 
 /// From the start to the end, with a margin and a part of the time more.

@@ -1,15 +1,16 @@
 //! Static parts of the chart: grid, desired and planned trajectory, time marks, closest points.
 
-use rerun::{AsComponents, Color, LineStrips2D, Points2D};
+use rerun::{AsComponents, Color};
 
-use super::{closest, rules, ships};
+use super::ships::Ships;
+use super::{closest, rules};
 use crate::frame::Vector;
 use crate::geometry::Window;
 use crate::obstacle::SpaceTimeObstacle;
 use crate::recording::canvas::style::{self, SpeedClass};
 use crate::recording::canvas::{
-    Canvas, Labels, Lines, ShownMotion, ViewModel, desired_leg, flat, labelled, round_down,
-    round_down_time,
+    Canvas, Labels, Lines, ShownMotion, Strip, ViewModel, desired_leg, flat, labelled, lines,
+    points, round_down, round_down_time,
 };
 use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, path};
@@ -20,30 +21,28 @@ use crate::trajectory::{Cubic, Segment, Trajectory};
 /// Turn between two drawn points of an arc, radians.
 const ARC_STEP: f64 = std::f64::consts::PI / 60.0;
 
-pub type Strip = Vec<[f32; 2]>;
-
 /// A polyline through `(position, time)`.
 pub type TimedLine = Vec<(Vector, f64)>;
 
 /// Logs the chart of a run without its ships, and gives the labels back: names keep off them.
 /// `broken` are the rules that own ship breaks, if it is judged.
-pub fn log_chart(rec: &mut Recorder, model: &ViewModel, broken: Option<&[&str]>) -> Logged<Labels> {
-    let times = model.cursor_times.iter();
-    let targets = model.scenario.targets.iter();
+pub fn log_chart(
+    rec: &mut Recorder,
+    model: &ViewModel,
+    ships: &Ships,
+    broken: Option<&[&str]>,
+) -> Logged<Labels> {
     let mut labels = labels(model);
-    let own = times.clone().map(|&t| model.motion.pose_at(t).position);
-    labels.keep_off_track(model.scenario.own_ship.hull.beam, own);
-    for target in targets {
-        let beam = target.ship().map_or(0.0, |ship| ship.hull.beam);
-        labels.keep_off_track(beam, times.clone().map(|&t| target.position_at(t)));
-    }
+    ships.keep_off(&mut labels);
     log_waters(rec, model)?;
     log_planned(rec, model)?;
     log_conflict(rec, model, &mut labels)?;
     log_violations(rec, model, &mut labels)?;
-    let own = [ships::own_ship(model)];
-    let ships = |time| ships::sighted(model, &own, time);
-    closest::log_closest(rec, model, &mut labels, &closest::approaches(model), ships)?;
+    let passages = model.run.evaluation.iter().flat_map(|e| &e.passages);
+    let targets = model.scenario.targets.iter().zip(passages);
+    let passages = targets.map(|(target, passage)| (&*target.name, passage.tcpa, passage.dcpa));
+    let passages: Vec<_> = passages.collect();
+    closest::log_closest(rec, model, &mut labels, ships, &passages)?;
     rules::add_broken(&mut labels, broken);
     log_time_marks(rec, model, &mut labels)?;
     labels.log(rec)?;
@@ -271,9 +270,7 @@ fn log_marks(
         labels.add(&text, place, color);
         places.push(flat(place));
     }
-    let marks = Points2D::new(places)
-        .with_colors([color])
-        .with_radii([style::points(radius)]);
+    let marks = points(color, radius).with_positions(places);
     rec.log_static(path(&[MAP, entity]), &marks)
 }
 
@@ -284,12 +281,8 @@ fn log_track(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target)
     let way: Vec<_> = joints.map(|t| flat(target.position_at(t))).collect();
     let times = multiples(0.0, canvas.end, mark_step(canvas)).skip(1);
     let marks = times.map(|t| flat(target.position_at(t)));
-    let line = LineStrips2D::new([way])
-        .with_colors([color])
-        .with_radii([style::points(0.6)]);
-    let marks = Points2D::new(marks)
-        .with_colors([color])
-        .with_radii([style::points(3.0)]);
+    let line = lines(color, 0.6).with_strips([way]);
+    let marks = points(color, 3.0).with_positions(marks);
     let parts = [&line as &dyn AsComponents, &marks];
     rec.log_static(path(&[MAP, "tracks", &target.name]), &parts)
 }

@@ -1,43 +1,43 @@
 //! The closed loop on the chart, and its curves.
 
-use rerun::components::InterpolationMode::Linear;
-use rerun::{Color, LineStrips2D, Points2D, TimeColumn};
+use rerun::{LineStrips2D, TimeColumn};
 
-use super::chart::{self, Strip};
-use super::closest::{self, Approach};
-use super::curves::{self, CLEARANCE, Series};
+use super::chart;
+use super::closest::{self, Passage};
+use super::curves::{self, CLEARANCE, Plot, Series};
 use super::rules::{self, Judged};
-use super::ships::{self, Sighted, outline};
+use super::ships::{self, Ships, Sighted, outline};
 use crate::geometry::ConvexPolygon;
-use crate::recording::canvas::{AssumedTarget, ClosedLoop, Labels, flat, labelled, style};
+use crate::recording::canvas::{
+    AssumedTarget, ClosedLoop, Strip, flat, labelled, lines, strip_columns, style,
+};
 use crate::recording::recorder::Recorder;
-use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
+use crate::recording::{Logged, MAP, TIMELINE, path};
 use crate::text::{clock, tenths};
 
-pub const OFF_PLAN: &str = "curves/off_plan_m";
-pub const PLANNING: &str = "curves/planning_ms";
-
 pub fn log_chart(rec: &mut Recorder, model: &ClosedLoop, judged: &[Judged]) -> Logged {
+    let own = [style::OWN_SHIP];
+    let ships = &Ships::new(&model.canvas, own, |time| sighted(model, time));
     chart::log_sea(rec, &model.canvas)?;
     log_plans(rec, model)?;
     log_assumed(rec, model)?;
-    log_ships(rec, model)?;
+    log_ships(rec, model, ships)?;
     log_contacts(rec, model)?;
     let mut labels = chart::labels(&model.canvas);
-    let times = model.canvas.cursor_times.iter();
-    let own = times.clone().map(|&t| model.own_at(t).0.position);
-    labels.keep_off_track(model.canvas.scenario.own_ship.hull.beam, own);
-    for target in &model.simulation.targets {
-        let beam = target.set_m.as_ref().map_or(target.beam_m, |_| 0.0);
-        let ships = times.clone().filter_map(|&time| target.at(time));
-        labels.keep_off_track(beam, ships.map(|ship| ship.pose.position));
-    }
-    let ships = |time| sighted(model, time);
-    closest::log_closest(rec, &model.canvas, &mut labels, &approaches(model), ships)?;
+    ships.keep_off(&mut labels);
+    closest::log_closest(rec, &model.canvas, &mut labels, ships, &passages(model))?;
     let broken = model.simulation.conduct.breaks.iter();
     let broken: Vec<&str> = broken.map(String::as_str).collect();
     rules::add_broken(&mut labels, (!judged.is_empty()).then_some(&broken[..]));
-    log_names(rec, model, &labels, judged)?;
+    let least_until = model.least_until();
+    let own = |time: f64| {
+        let begun = least_until.partition_point(|(at, _)| *at <= time);
+        match least_until[..begun].last() {
+            Some((_, least)) => format!("Own ship\nclosest so far {} m", tenths(*least)),
+            None => "Own ship".to_owned(),
+        }
+    };
+    ships::log_names_with_roles(rec, &model.canvas, &labels, ships, own, judged)?;
     labels.log(rec)
 }
 
@@ -78,51 +78,16 @@ fn sighted(model: &ClosedLoop, time: f64) -> Option<Vec<Sighted>> {
 }
 
 /// The closest approaches of what was sailed.
-fn approaches(model: &ClosedLoop) -> Vec<Approach> {
-    let targets = model.simulation.targets.iter().enumerate();
-    let approach = targets.filter_map(|(index, target)| {
-        let time = target.contact_t_s.unwrap_or(target.least_clearance_t_s);
-        let ships = sighted(model, time)?;
-        let apart = target
-            .least_clearance_m
-            .filter(|_| target.contact_t_s.is_none());
-        let apart = apart.unwrap_or(f64::NAN);
-        let pair = [&ships[0], &ships[index + 1]];
-        Some(Approach::new(
-            &target.name,
-            (time, apart),
-            pair,
-            style::target(index),
-        ))
-    });
-    approach.collect()
-}
-
-/// Logs the names of the targets with own ship's roles, and at own ship how close it has come.
-fn log_names(rec: &mut Recorder, model: &ClosedLoop, labels: &Labels, judged: &[Judged]) -> Logged {
-    let targets = &model.simulation.targets;
-    let least_until = model.least_until();
-    let own = |time: f64| {
-        let begun = least_until.partition_point(|(at, _)| *at <= time);
-        match least_until[..begun].last() {
-            Some((_, least)) => format!("Own ship\nclosest so far {} m", tenths(*least)),
-            None => "Own ship".to_owned(),
+fn passages<'a>(model: &ClosedLoop<'a>) -> Vec<Passage<'a>> {
+    let targets = model.simulation.targets.iter();
+    let passage = targets.map(|target| match target.contact_t_s {
+        Some(time) => (&*target.name, time, f64::NAN),
+        None => {
+            let apart = target.least_clearance_m.unwrap_or(f64::NAN);
+            (&*target.name, target.least_clearance_t_s, apart)
         }
-    };
-    let text = |index: usize, time: f64| match index.checked_sub(1) {
-        None => own(time),
-        Some(index) => rules::name_with_role(judged, &targets[index].name, time),
-    };
-    let colors = colors(targets.len());
-    let ships = |time| sighted(model, time);
-    ships::log_names(rec, &model.canvas, labels, (0, &colors), ships, text)
-}
-
-/// The colours of own ship and of the targets.
-fn colors(targets: usize) -> Vec<Color> {
-    std::iter::once(style::OWN_SHIP)
-        .chain((0..targets).map(style::target))
-        .collect()
+    });
+    passage.collect()
 }
 
 fn log_plans(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
@@ -152,58 +117,49 @@ fn log_assumed(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     let targets = &model.simulation.targets;
     let names = targets.iter().map(|target| target.name.as_str());
     let colors = (0..targets.len()).map(style::target);
-    let sets = ships::set_style(style::CHART_TEXT, ships::HARD_RADIUS)
+    let sets = lines(style::CHART_TEXT, ships::HARD.radius)
         .with_colors(colors)
         .with_labels(names.clone())
         .with_show_labels(false);
     let assumed = |at: fn(&AssumedTarget, f64) -> ConvexPolygon| {
         move |time: f64| {
-            let plan = model.plan_at(time)?;
-            let targets = plan.targets.iter();
-            let polygons = targets.map(|target| at(target, time - plan.from));
-            Some(polygons.map(|polygon| outline(&polygon)).collect())
+            let targets = model.plan_at(time).into_iter().flat_map(|plan| {
+                let since = time - plan.from;
+                plan.targets.iter().map(move |target| at(target, since))
+            });
+            targets.map(|polygon| outline(&polygon)).collect()
         }
     };
+    let entity = |name: &str| path(&[MAP, name]);
     let hard = assumed(AssumedTarget::hard_at);
-    log_strips(rec, model, "hard_sets", &sets, hard)?;
-    let hulls = ships::set_style(style::DESIRED, 1.0)
+    ships::log_strips(rec, &model.canvas, entity("hard_sets"), &sets, hard)?;
+    let hulls = lines(style::DESIRED, 1.0)
         .with_labels(names.map(|name| format!("{name}, estimate")))
         .with_show_labels(false);
     let estimates = assumed(AssumedTarget::hull_at);
-    log_strips(rec, model, "estimates", &hulls, estimates)
+    ships::log_strips(rec, &model.canvas, entity("estimates"), &hulls, estimates)
 }
 
-/// Logs the true ships: speed vectors, hulls and symbols, and a dot per ship and cursor time.
-fn log_ships(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
-    let canvas = &model.canvas;
+/// Radius of the dots of trails, points.
+const TRAIL_RADIUS: f32 = 2.0;
+
+/// Logs the true ships: speed vectors, hulls and symbols, and their trails.
+fn log_ships(rec: &mut Recorder, model: &ClosedLoop, ships: &Ships) -> Logged {
     let drawn = |ship: &Sighted| -> Vec<Strip> {
         std::iter::once(ship.vector())
             .chain(ship.strips())
             .collect()
     };
-    let colors = colors(model.simulation.targets.len());
-    let lines = sighted(model, 0.0).unwrap_or_default();
-    let lines = lines.iter().map(|ship| drawn(ship).len());
-    let each = colors
-        .iter()
-        .zip(lines)
-        .flat_map(|(color, lines)| vec![*color; lines]);
-    let style = ships::set_style(style::OWN_SHIP, 1.0).with_colors(each);
-    log_strips(rec, model, "ships", &style, |time| {
-        Some(sighted(model, time)?.iter().flat_map(drawn).collect())
-    })?;
-    let dots = Points2D::update_fields()
-        .with_colors(colors)
-        .with_radii([style::points(2.0)]);
-    let times = canvas.cursor_times.iter();
-    let ships: Vec<Vec<Sighted>> = times
-        .map(|&t| sighted(model, t).unwrap_or_default())
+    let rows = ships.rows.iter();
+    let rows: Vec<Vec<Strip>> = rows
+        .map(|row| row.iter().flat_map(drawn).collect())
         .collect();
-    let lengths: Vec<usize> = ships.iter().map(Vec::len).collect();
-    let columns = Points2D::update_fields()
-        .with_positions(ships.iter().flatten().map(|ship| flat(ship.place)))
-        .columns(lengths)?;
-    rec.log_moving(path(&[TRAILS]), canvas.cursor_column(), &dots, columns)
+    let colored = ships.colors.iter().zip(ships.rows.iter().flatten());
+    let each = colored.flat_map(|(color, ship)| vec![*color; drawn(ship).len()]);
+    let style = lines(style::OWN_SHIP, 1.0).with_colors(each);
+    let times = model.canvas.cursor_column();
+    rec.log_moving(path(&[MAP, "ships"]), times, &style, strip_columns(rows)?)?;
+    ships::log_trails(rec, &model.canvas, ships, TRAIL_RADIUS)
 }
 
 fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
@@ -222,58 +178,55 @@ fn log_contacts(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
     Ok(())
 }
 
-/// Logs lines at every cursor time; none where `at` has none.
-fn log_strips(
-    rec: &mut Recorder,
-    model: &ClosedLoop,
-    entity: &str,
-    style: &LineStrips2D,
-    at: impl Fn(f64) -> Option<Vec<Strip>>,
-) -> Logged {
-    let times = model.canvas.cursor_times.iter();
-    let rows: Vec<Vec<Strip>> = times.map(|&time| at(time).unwrap_or_default()).collect();
-    let lengths: Vec<usize> = rows.iter().map(Vec::len).collect();
-    let columns = LineStrips2D::update_fields()
-        .with_strips(rows.into_iter().flatten())
-        .columns(lengths)?;
-    let times = model.canvas.cursor_column();
-    rec.log_moving(path(&[MAP, entity]), times, style, columns)
-}
-
-pub fn log_curves(rec: &mut Recorder, model: &ClosedLoop) -> Logged {
+/// The plots, that of the hulls first if there is a target.
+pub fn plots(model: &ClosedLoop) -> Vec<Plot> {
     let (canvas, simulation) = (&model.canvas, model.simulation);
-    let mut log = |entity: &str, times: &[f64], series: &[Series]| {
-        curves::log_plot(rec, path(&[entity]), times, Linear, series)
-    };
-    let mut series = Vec::new();
-    for (index, target) in model.simulation.targets.iter().enumerate() {
-        let distances = canvas
-            .samples
-            .iter()
-            .map_while(|&time| model.clearance(target, time));
-        let (color, distances) = (style::target(index), distances.collect());
-        series.push(Series::new(&target.name, color, 2.0, distances));
-    }
+    let mut plots = Vec::new();
+    let targets = simulation.targets.iter().enumerate();
+    let mut series: Vec<Series> = targets
+        .map(|(index, target)| {
+            let samples = canvas.samples.iter();
+            let distances = samples.map_while(|&time| model.clearance(target, time));
+            Series::new(&target.name, style::target(index), 2.0, distances.collect())
+        })
+        .collect();
     if !series.is_empty() {
         // own ship keeps its margin from hulls, and nothing from explicit sets
-        if model.simulation.targets.iter().any(|t| t.set_m.is_none()) {
+        if simulation.targets.iter().any(|t| t.set_m.is_none()) {
             series.push(curves::safety_margin(canvas));
         }
-        log(CLEARANCE, &canvas.samples, &series)?;
+        let range = model.near_clearances();
+        let title = range.map(|[_, top]| format!("Distance of the hulls up to {top} m"));
+        let title = title.unwrap_or_default();
+        plots.push(Plot {
+            range,
+            ..Plot::new(title, CLEARANCE, &canvas.samples, series)
+        });
     }
-    let off = canvas
-        .samples
-        .iter()
-        .filter_map(|&time| Some((time, model.off_plan(time)?)));
+    let samples = canvas.samples.iter();
+    let off = samples.filter_map(|&time| Some((time, model.off_plan(time)?)));
     // below a micrometre it is rounding
     let off = off.map(|(time, metres)| (time, (metres * 1e6).round() / 1e6));
     let (times, off): (Vec<f64>, Vec<f64>) = off.unzip();
     let margin = vec![canvas.scenario.own_ship.tracking_margin; off.len()];
     let off = Series::new("off the plan", style::OWN_SHIP, 2.0, off);
     let margin = Series::new("tracking margin", style::ALARM, 1.0, margin);
-    log(OFF_PLAN, &times, &[off, margin])?;
+    let title = "Distance off the plan (m)";
+    plots.push(Plot::new(
+        title,
+        "curves/off_plan_m",
+        &times,
+        vec![off, margin],
+    ));
     let times: Vec<f64> = simulation.replans.iter().map(|replan| replan.t_s).collect();
     let milliseconds = simulation.timing.plan_s.iter().map(|s| s * 1e3);
     let planning = Series::new("planning", style::OWN_SHIP, 2.0, milliseconds.collect());
-    log(PLANNING, &times, &[planning])
+    let title = "Time of planning (ms)";
+    plots.push(Plot::new(
+        title,
+        "curves/planning_ms",
+        &times,
+        vec![planning],
+    ));
+    plots
 }

@@ -1,12 +1,11 @@
 //! Closest approaches of own ship and its targets on the chart.
 
-use rerun::{AsComponents, Color, Points2D};
+use rerun::{AsComponents, Color};
 
-use super::chart::Strip;
-use super::ships::Sighted;
+use super::ships::{Ships, Sighted};
 use crate::frame::Vector;
 use crate::geometry::ConvexPolygon;
-use crate::recording::canvas::{Canvas, Labels, Lines, ViewModel, flat, style};
+use crate::recording::canvas::{Canvas, Labels, Lines, Strip, flat, points, style};
 use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, path};
 use crate::text::{clock, tenths};
@@ -20,8 +19,11 @@ const STRENGTH: f32 = 0.6;
 /// the ships.
 pub const ENCOUNTER: f64 = 1.0 / 15.0;
 
+/// The name of a target, when it is closest in seconds, and how far apart the hulls are in metres.
+pub type Passage<'a> = (&'a str, f64, f64);
+
 /// A closest approach of the hulls.
-pub struct Approach {
+struct Approach {
     target: String,
     /// Seconds.
     time: f64,
@@ -38,12 +40,7 @@ impl Approach {
     /// Own ship and a target at a time.
     ///
     /// Own ship is a point to an explicit set.
-    pub fn new(
-        target: &str,
-        (time, apart): (f64, f64),
-        [own, other]: [&Sighted; 2],
-        color: Color,
-    ) -> Self {
+    fn new((target, time, apart): Passage, [own, other]: [&Sighted; 2], color: Color) -> Self {
         let hull = if other.is_set {
             &ConvexPolygon::point(own.place)
         } else {
@@ -88,41 +85,29 @@ impl Approach {
     }
 }
 
-/// The closest approaches of a run, for the expected motions of the targets.
-pub fn approaches(model: &ViewModel) -> Vec<Approach> {
-    let passages = model.run.evaluation.iter().flat_map(|e| &e.passages);
-    let both = model.scenario.targets.iter().zip(passages).enumerate();
-    let approach = both.filter_map(|(index, (target, passage))| {
-        let time = passage.tcpa;
-        let own = Sighted::own(model, &model.motion, time);
-        let other = Sighted::target(model, target, time)?;
-        let color = model.target_color(index);
-        Some(Approach::new(
-            &target.name,
-            (time, passage.dcpa),
-            [&own, &other],
-            color,
-        ))
-    });
-    approach.collect()
-}
-
 /// Logs a line between the hulls at every closest approach; thick and named is the least, with both
-/// ships around it. The others are named where they are pointed at. `ships` are there at a time.
+/// ships around it. The others are named where they are pointed at.
 pub fn log_closest(
     rec: &mut Recorder,
     canvas: &Canvas,
     labels: &mut Labels,
-    approaches: &[Approach],
-    ships: impl Fn(f64) -> Option<Vec<Sighted>>,
+    ships: &Ships,
+    passages: &[Passage],
 ) -> Logged {
+    let passages = passages.iter().enumerate();
+    let approaches = passages.filter_map(|(index, passage)| {
+        let ships = (ships.at)(passage.1)?;
+        let pair = [&ships[0], &ships[index + 1]];
+        Some(Approach::new(*passage, pair, canvas.target_color(index)))
+    });
+    let approaches: Vec<Approach> = approaches.collect();
     let is_near = |time: f64| {
         let mut nearest = approaches.iter().map(|approach| approach.time);
         nearest.any(|nearest| (time - nearest).abs() <= ENCOUNTER * canvas.end)
     };
-    let times = canvas.cursor_times.iter().copied();
-    for ship in times.filter(|t| is_near(*t)).filter_map(ships).flatten() {
-        labels.keep_off(ship.covers());
+    let rows = canvas.cursor_times.iter().zip(&ships.rows);
+    for (_, row) in rows.filter(|(time, _)| is_near(**time)) {
+        row.iter().for_each(|ship| labels.keep_off(ship.covers()));
     }
     let least = approaches.iter().min_by(|a, b| a.apart.total_cmp(&b.apart));
     let Some(least) = least else {
@@ -130,7 +115,7 @@ pub fn log_closest(
     };
     let mut lines = Lines::default();
     let mut texts = Vec::new();
-    for approach in approaches {
+    for approach in &approaches {
         let is_least = std::ptr::eq(approach, least);
         let (color, radius) = match (approach.is_contact(), is_least) {
             (true, _) => (style::ALARM, 2.5),
@@ -150,9 +135,7 @@ pub fn log_closest(
     } else {
         style::CLOSEST
     };
-    let ends = Points2D::new(least.ends.map(flat))
-        .with_colors([color])
-        .with_radii([style::points(4.0)]);
+    let ends = points(color, 4.0).with_positions(least.ends.map(flat));
     let lines = lines.archetype().with_labels(texts).with_show_labels(false);
     let parts: [&dyn AsComponents; 2] = [&lines, &ends];
     rec.log_static(path(&[MAP, "closest_points"]), &parts)?;

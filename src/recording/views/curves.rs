@@ -27,31 +27,95 @@ pub const STATES: &str = "curves/states";
 /// Surge force, sway force and yaw moment, held from node to node.
 pub const FORCES: &str = "curves/forces";
 
-/// Logs the curves, and gives back the least clearance and the least margin, metres.
-pub fn log_curves(rec: &mut Recorder, model: &ViewModel) -> Logged<[f64; 2]> {
-    let mut log = |entity: &str, times: &[f64], series: &[Series]| {
-        log_plot(rec, path(&[entity]), times, Linear, series)
-    };
-    let clearances = clearance_curves(model);
-    log(CLEARANCE, &model.samples, &clearances)?;
-    let margins = margin_curves(model);
-    if !model.sets.is_empty() {
-        log(MARGIN, &model.samples, &margins)?;
+/// A plot: what is logged, and its panel in the viewer.
+pub struct Plot {
+    /// `None` has no panel.
+    pub title: Option<String>,
+    pub entity: &'static str,
+    /// Values that the panel shows; all of them without.
+    pub range: Option<[f64; 2]>,
+    pub times: Vec<f64>,
+    pub between: InterpolationMode,
+    /// Nothing is logged without.
+    pub series: Vec<Series>,
+    /// Rows before which the lines are interrupted.
+    pub breaks: BTreeSet<usize>,
+    /// True where every curve has an entity of its own below that of the plot.
+    pub apart: bool,
+}
+
+impl Plot {
+    /// A panel with lines from sample to sample.
+    pub fn new(
+        title: impl Into<String>,
+        entity: &'static str,
+        times: &[f64],
+        series: Vec<Series>,
+    ) -> Self {
+        Self {
+            title: Some(title.into()),
+            entity,
+            range: None,
+            times: times.to_vec(),
+            between: Linear,
+            series,
+            breaks: BTreeSet::new(),
+            apart: false,
+        }
     }
-    let times = risk_times(model);
-    log(RISK, &times, &risk_curves(model, &times))?;
-    let courses = course_curves(model);
-    let drawn = (&model.samples[..], Linear);
-    log_broken_plot(rec, path(&[COURSE]), drawn, &courses, &jumps(&courses))?;
-    log_speed(rec, model)?;
-    if let Some(motion) = steered(model) {
-        log_forces(rec, motion)?;
+
+    /// The panel of speeds, knots.
+    pub fn of_speeds(times: &[f64], series: Vec<Series>) -> Self {
+        Self {
+            between: StepAfter,
+            ..Self::new("Speed (kn)", SPEED, times, series)
+        }
     }
-    let curves = [&clearances[..clearances.len() - 1], &margins];
-    Ok(curves.map(|curves| {
+}
+
+/// The plots of a run: two of distances, then the others.
+pub fn plots(model: &ViewModel) -> Vec<Plot> {
+    let least = |curves: &[Series]| {
         let values = curves.iter().flat_map(|curve| &curve.values);
         values.copied().fold(f64::INFINITY, f64::min)
-    }))
+    };
+    let clearances = clearance_curves(model);
+    let clearance = least(&clearances[..clearances.len() - 1]);
+    let mut margins = margin_curves(model);
+    let margin = least(&margins);
+    if model.sets.is_empty() {
+        margins.clear();
+    }
+    let [_, top] = model.near(clearance);
+    let distances = |what: &str, entity, curves, least: f64| {
+        let title = format!("{what} up to {top} m");
+        Plot {
+            range: Some([least.min(0.0).max(-top), top]),
+            ..Plot::new(title, entity, &model.samples, curves)
+        }
+    };
+    let courses = course_curves(model);
+    let times = risk_times(model);
+    let risks = risk_curves(model, &times);
+    let of_targets = risks[..risks.len() - 1].iter();
+    let has_risk = of_targets.flat_map(|curve| &curve.values).any(|r| *r > 0.0);
+    let mut plots = vec![
+        distances("Hull clearance", CLEARANCE, clearances, clearance),
+        distances("Set margin", MARGIN, margins, margin),
+        speed_plot(model),
+        Plot {
+            breaks: jumps(&courses),
+            ..Plot::new("Course (deg)", COURSE, &model.samples, courses)
+        },
+        Plot {
+            title: has_risk.then(|| "Risk".to_owned()),
+            ..Plot::new("", RISK, &times, risks)
+        },
+    ];
+    if let ShownMotion::Planned(trajectory) = model.motion {
+        plots.extend(trajectory.steered().into_iter().flat_map(force_plots));
+    }
+    plots
 }
 
 pub struct Series {
@@ -74,48 +138,44 @@ impl Series {
     }
 }
 
-/// Logs all curves of a plot as one entity. Every row has a number for each of them, so the plot
-/// ends with the shortest.
-pub fn log_plot(
-    rec: &mut Recorder,
-    entity: EntityPath,
-    times: &[f64],
-    between: InterpolationMode,
-    series: &[Series],
-) -> Logged {
-    log_broken_plot(rec, entity, (times, between), series, &BTreeSet::new())
+pub fn log_plots(rec: &mut Recorder, plots: &[Plot]) -> Logged {
+    for plot in plots {
+        if !plot.apart {
+            log_curves(rec, path(&[plot.entity]), plot, &plot.series)?;
+            continue;
+        }
+        for curve in &plot.series {
+            let entity = path(&[plot.entity, &curve.name]);
+            log_curves(rec, entity, plot, std::slice::from_ref(curve))?;
+        }
+    }
+    Ok(())
 }
 
-/// Logs a plot whose lines are interrupted before some rows.
-fn log_broken_plot(
-    rec: &mut Recorder,
-    entity: EntityPath,
-    (times, between): (&[f64], InterpolationMode),
-    series: &[Series],
-    breaks: &BTreeSet<usize>,
-) -> Logged {
-    let rows = series.iter().map(|s| s.values.len()).min().unwrap_or(0);
-    let times = &times[..rows.min(times.len())];
+/// Logs curves of a plot as one entity. Every row has a number for each of them, so they end with
+/// the shortest.
+fn log_curves(rec: &mut Recorder, entity: EntityPath, plot: &Plot, series: &[Series]) -> Logged {
+    let Some(rows) = series.iter().map(|s| s.values.len()).min() else {
+        return Ok(());
+    };
+    let mut times = plot.times[..rows.min(plot.times.len())].to_vec();
     let style = SeriesLines::new()
         .with_names(series.iter().map(|s| s.name.as_str()))
         .with_colors(series.iter().map(|s| s.color))
         .with_widths(series.iter().map(|s| s.width))
-        .with_interpolation_mode(between)
+        .with_interpolation_mode(plot.between)
         // averaging neighbours would show speeds and depths that are not there
         .with_aggregation_policy(AggregationPolicy::Off);
     let values = (0..times.len()).flat_map(|row| series.iter().map(move |s| s.values[row]));
-    let mut times = times.to_vec();
+    let columns = Scalars::update_fields().with_scalars(values);
     let mut lengths = vec![series.len(); times.len()];
     // a row without values interrupts the lines
-    for row in breaks.range(..times.len()).rev() {
+    for row in plot.breaks.range(..times.len()).rev() {
         times.insert(*row, 0.5 * (times[*row - 1] + times[*row]));
         lengths.insert(*row, 0);
     }
-    let columns = Scalars::update_fields()
-        .with_scalars(values)
-        .columns(lengths)?;
     let times = TimeColumn::new_duration_secs(TIMELINE, times);
-    rec.log_moving(entity, times, &style, columns)
+    rec.log_moving(entity, times, &style, columns.columns(lengths)?)
 }
 
 fn clearance_curves(model: &ViewModel) -> Vec<Series> {
@@ -207,14 +267,6 @@ pub fn risk_curves(model: &ViewModel, times: &[f64]) -> Vec<Series> {
     series
 }
 
-/// True where own ship has a risk against a set at one of the times.
-pub fn has_risk(model: &ViewModel) -> bool {
-    let times = risk_times(model);
-    let some = |set: &Obstacle| risks(model, set, &times).iter().any(|risk| *risk > 0.0);
-    let mut targets = model.run.targets.iter();
-    targets.any(|target| some(&target.whole) || some(&target.sets.hard))
-}
-
 /// The samples and the times of the largest risks, so that the curves reach the reported values.
 pub fn risk_times(model: &ViewModel) -> Vec<f64> {
     let mut times = model.samples.clone();
@@ -236,7 +288,7 @@ fn risks(model: &ViewModel, set: &Obstacle, times: &[f64]) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-fn log_speed(rec: &mut Recorder, model: &ViewModel) -> Logged {
+fn speed_plot(model: &ViewModel) -> Plot {
     let wanted = ShownMotion::Nominal(&model.scenario.desired);
     let mut shown = vec![(wanted, "desired", style::DESIRED, 1.0)];
     if model.motion.is_planned() {
@@ -246,9 +298,7 @@ fn log_speed(rec: &mut Recorder, model: &ViewModel) -> Logged {
     let curve = |(motion, name, color, width): (ShownMotion, &str, Color, f32)| {
         Series::new(name, color, width, speeds(&motion, &times))
     };
-    let series: Vec<Series> = shown.into_iter().map(curve).collect();
-    let between = StepAfter;
-    log_plot(rec, path(&[SPEED]), &times, between, &series)
+    Plot::of_speeds(&times, shown.into_iter().map(curve).collect())
 }
 
 /// Times at which one of the speeds changes or ends, seconds.
@@ -306,13 +356,6 @@ fn jumps(series: &[Series]) -> BTreeSet<usize> {
     jumps.collect()
 }
 
-pub fn steered<'a>(model: &ViewModel<'a>) -> Option<&'a Steered> {
-    match model.motion {
-        ShownMotion::Planned(trajectory) => trajectory.steered(),
-        ShownMotion::Nominal(_) => None,
-    }
-}
-
 type Quantity = (&'static str, fn(&ForceNode) -> f64);
 
 const STATE: [Quantity; 3] = [
@@ -329,19 +372,24 @@ const FORCE: [Quantity; 3] = [
     ("yaw clockwise, Nm", |n| -n.moment),
 ];
 
-fn log_forces(rec: &mut Recorder, motion: &Steered) -> Logged {
+fn force_plots(motion: &Steered) -> [Plot; 2] {
     let nodes = motion.nodes();
     let times: Vec<f64> = nodes.iter().map(|n| n.time).collect();
-    for (entity, between, quantities) in [(STATES, Linear, STATE), (FORCES, StepAfter, FORCE)] {
+    let plot = |title: &str, entity, quantities: [Quantity; 3]| {
         let quantities = quantities.into_iter().enumerate();
         let series = quantities.map(|(index, (name, value))| {
             let values = nodes.iter().map(value).collect();
             Series::new(name, style::target(index), 2.0, values)
         });
-        let series: Vec<Series> = series.collect();
-        log_plot(rec, path(&[entity]), &times, between, &series)?;
-    }
-    Ok(())
+        Plot::new(title, entity, &times, series.collect())
+    };
+    [
+        plot("Velocity (m/s, deg/s)", STATES, STATE),
+        Plot {
+            between: StepAfter,
+            ..plot("Forces (N, Nm)", FORCES, FORCE)
+        },
+    ]
 }
 
 #[cfg(test)]
@@ -354,9 +402,11 @@ mod tests {
         let series = [Series::new("own ship", style::OWN_SHIP, 2.0, values)];
         assert_eq!(jumps(&series), BTreeSet::from([2, 4]));
         let mut rec = Recorder::default();
-        let times = [0.0, 10.0, 20.0, 30.0, 40.0];
-        let drawn = (&times[..], Linear);
-        log_broken_plot(&mut rec, path(&[COURSE]), drawn, &series, &jumps(&series)).expect("logs");
+        let plot = Plot {
+            breaks: jumps(&series),
+            ..Plot::new("", COURSE, &[0.0, 10.0, 20.0, 30.0, 40.0], series.into())
+        };
+        log_plots(&mut rec, &[plot]).expect("logs");
         let chunks = rec.into_chunks();
         let moving = chunks
             .iter()

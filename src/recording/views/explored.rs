@@ -2,14 +2,14 @@
 
 use std::cell::OnceCell;
 
-use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D};
+use rerun::{Color, EntityPath, LineStrips3D};
 
 use super::chart::{TimedLine, one_line, polyline};
 use crate::obstacle::{LandObstacle, SpaceTimeObstacle};
 use crate::pipeline::{self, Run};
 use crate::planner::{EdgeVerdict, ExploredEdge};
 use crate::recording::Logged;
-use crate::recording::canvas::{Canvas, flat, style};
+use crate::recording::canvas::{Canvas, flat, lines, style};
 use crate::recording::recorder::Recorder;
 use crate::text::clock;
 use crate::tolerance;
@@ -157,9 +157,8 @@ fn log_kind(rec: &mut Recorder, canvas: &Canvas, kind: Kind, folders: &[EntityPa
     }
     let [on, over] = folders.each_ref().map(|f| f.join(&kind.name.into()));
     let on_chart = kind.strips.iter().map(|s| s.iter().map(|&(p, _)| flat(p)));
-    let mut on_chart = LineStrips2D::new(on_chart)
-        .with_colors([kind.color])
-        .with_radii([style::points(0.5)])
+    let mut on_chart = lines(kind.color, 0.5)
+        .with_strips(on_chart)
         // below everything but the grid
         .with_draw_order(5.0);
     if !kind.reasons.is_empty() {

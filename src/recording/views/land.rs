@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use rerun::{LineStrips2D, Mesh3D, Radius};
+use rerun::{Mesh3D, Radius};
 
 use super::chart::shown_window;
 use crate::frame::Vector;
 use crate::geometry::{Polygon, Window};
-use crate::recording::canvas::{Canvas, flat, style};
+use crate::recording::canvas::{Canvas, flat, lines, style};
 use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, VOLUME, path};
 use crate::tolerance;
@@ -44,17 +44,17 @@ fn log_filling(rec: &mut Recorder, canvas: &Canvas) -> Logged {
                 .extend(width_at(&corners, row as f64 * step));
         }
     }
-    let lines = rows.into_iter().flat_map(|(row, widths)| {
+    let filling = rows.into_iter().flat_map(|(row, widths)| {
         let north = row as f64 * step;
         let line = move |ends: [f64; 2]| ends.map(|east| flat(Vector::new(east, north)));
         joined(widths).into_iter().map(line)
     });
-    let lines: Vec<[[f32; 2]; 2]> = lines.collect();
-    if lines.is_empty() {
+    let filling: Vec<[[f32; 2]; 2]> = filling.collect();
+    if filling.is_empty() {
         return Ok(());
     }
-    let filling = LineStrips2D::new(lines)
-        .with_colors([style::toward_background(style::LAND, 0.5)])
+    let filling = lines(style::toward_background(style::LAND, 0.5), 0.0)
+        .with_strips(filling)
         // each line covers the soft edges of its neighbours, else these are seen as streaks
         .with_radii([Radius::new_scene_units(step as f32)])
         // below the grid
@@ -95,12 +95,8 @@ fn log_outlines(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     };
     let rings = land.map.polygons().iter().flat_map(Polygon::rings);
     let strips = rings.map(|ring| ring.iter().chain(&ring[..1]).map(|p| flat(*p)));
-    rec.log_static(
-        path(&[MAP, "land"]),
-        &LineStrips2D::new(strips.map(Vec::from_iter))
-            .with_colors([style::LAND])
-            .with_radii([style::points(1.2)]),
-    )
+    let outlines = lines(style::LAND, 1.2).with_strips(strips.map(Vec::from_iter));
+    rec.log_static(path(&[MAP, "land"]), &outlines)
 }
 
 fn log_surface(rec: &mut Recorder, canvas: &Canvas) -> Logged {

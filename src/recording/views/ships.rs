@@ -4,27 +4,56 @@ use rerun::{
     AsComponents, Color, EntityPath, LineStrips2D, Points2D, Quaternion, TimeColumn, Transform3D,
 };
 
-use super::chart::Strip;
 use super::rules::{Judged, name_with_role};
 use crate::colregs::SteadyShip;
 use crate::frame::{Pose, Vector};
 use crate::geometry::{ConvexPolygon, Window};
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
 use crate::recording::canvas::{
-    Canvas, Labels, Lines, ShownMotion, ViewModel, flat, labelled, leader_style, round_down_time,
-    style,
+    Canvas, Labels, Lines, ShownMotion, Strip, ViewModel, flat, labelled, leader_style, lines,
+    points, round_down_time, strip_columns, style,
 };
 use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, MAP, TIMELINE, TRAILS, path};
 use crate::target::{ShipTrack, Target};
 use crate::vessel::Hull;
 
-pub const HARD_RADIUS: f32 = 1.6;
-/// Line width of sets with a ship domain, thinner than that of the hard ones.
-pub const DOMAIN_RADIUS: f32 = 0.7;
+/// How sets of a kind are shown, below a folder of the chart and of the volume.
+pub struct SetKind {
+    pub folder: &'static str,
+    /// Strength of the colour of its lines, of 1.
+    strength: f32,
+    pub radius: f32,
+    /// Opacity of its body, of 255.
+    pub alpha: u8,
+}
 
-pub fn domain_color(canvas: &Canvas, index: usize) -> Color {
-    style::toward_background(canvas.target_color(index), 0.75)
+pub const HARD: SetKind = SetKind {
+    folder: "hard_sets",
+    strength: 1.0,
+    radius: 1.6,
+    alpha: 36,
+};
+
+/// Thinner and fainter than the hard ones.
+pub const DOMAIN: SetKind = SetKind {
+    folder: "domain_sets",
+    strength: 0.75,
+    radius: 0.7,
+    alpha: 16,
+};
+
+/// The sets of the targets with their kinds and colours.
+pub fn shown_sets<'c>(canvas: &'c Canvas) -> impl Iterator<Item = (SetKind, &'c Obstacle, Color)> {
+    canvas
+        .sets
+        .iter()
+        .enumerate()
+        .flat_map(move |(index, sets)| {
+            let with_domain = canvas.with_domain(sets).map(|set| (DOMAIN, set));
+            let kinds = with_domain.into_iter().chain([(HARD, &sets.hard)]);
+            kinds.map(move |(kind, set)| (kind, set, canvas.target_color(index)))
+        })
 }
 
 /// Own ship on one of the motions that are shown.
@@ -43,6 +72,8 @@ pub struct Sighted {
     /// The hull, or the set.
     pub outline: ConvexPolygon,
     symbol: Option<Strip>,
+    /// Metres; 0 of a set.
+    beam: f64,
     /// The end of the speed vector.
     tip: Vector,
     /// True for an explicit set, which own ship may not enter with its centre.
@@ -57,6 +88,7 @@ impl Sighted {
             place,
             outline: hull.polygon(&pose),
             symbol: symbol(canvas, hull, &pose),
+            beam: hull.beam,
             tip: place + velocity * vector_seconds(canvas),
             is_set: false,
         }
@@ -67,6 +99,7 @@ impl Sighted {
             place,
             outline,
             symbol: None,
+            beam: 0.0,
             tip: place,
             is_set: true,
         }
@@ -117,11 +150,59 @@ impl Sighted {
     }
 }
 
-pub fn log_ships(rec: &mut Recorder, model: &ViewModel) -> Logged {
+/// The ships that a recording shows, own ships first.
+pub struct Ships<'a> {
+    /// One per ship.
+    pub colors: Vec<Color>,
+    /// The ships at every cursor time; none where one of them is nowhere.
+    pub rows: Vec<Vec<Sighted>>,
+    /// The ships at any time.
+    pub at: Box<dyn Fn(f64) -> Option<Vec<Sighted>> + 'a>,
+}
+
+impl<'a> Ships<'a> {
+    /// Targets behind own ships. `at` is the ships at a time.
+    pub fn new(
+        canvas: &Canvas,
+        own: impl IntoIterator<Item = Color>,
+        at: impl Fn(f64) -> Option<Vec<Sighted>> + 'a,
+    ) -> Self {
+        let targets = 0..canvas.scenario.targets.len();
+        let others = targets.map(|index| canvas.target_color(index));
+        let times = canvas.cursor_times.iter();
+        Self {
+            colors: own.into_iter().chain(others).collect(),
+            rows: times.map(|&time| at(time).unwrap_or_default()).collect(),
+            at: Box::new(at),
+        }
+    }
+
+    /// Own ships on their motions, and the targets where they are expected.
+    pub fn expected(canvas: &'a Canvas, own: &'a [DrawnShip]) -> Self {
+        let colors = own.iter().map(|own| own.color);
+        Self::new(canvas, colors, move |time| sighted(canvas, own, time))
+    }
+
+    /// Labels keep off their tracks.
+    pub fn keep_off(&self, labels: &mut Labels) {
+        for index in 0..self.colors.len() {
+            let track = self.rows.iter().filter_map(|row| row.get(index));
+            let beam = track.clone().next().map_or(0.0, |ship| ship.beam);
+            labels.keep_off_track(beam, track.map(|ship| ship.place));
+        }
+    }
+
+    /// All places, and their number at every cursor time.
+    pub fn places(&self) -> (impl Iterator<Item = Vector>, Vec<usize>) {
+        let places = self.rows.iter().flatten().map(|ship| ship.place);
+        (places, self.rows.iter().map(Vec::len).collect())
+    }
+}
+
+pub fn log_ships(rec: &mut Recorder, model: &ViewModel, ships: &Ships) -> Logged {
     log_others(rec, model)?;
-    let own = own_ship(model);
-    log_own_ship(rec, model, path(&[MAP, "own_ship"]), &own)?;
-    log_trails(rec, model, &[own])
+    log_own_ship(rec, model, path(&[MAP, "own_ship"]), &own_ship(model))?;
+    log_trails(rec, model, ships, TRAIL_RADIUS)
 }
 
 /// Own ship of a run.
@@ -138,27 +219,22 @@ pub fn own_ship<'a>(model: &ViewModel<'a>) -> DrawnShip<'a> {
     }
 }
 
-/// Logs the names of own ship, and of the targets with own ship's role toward them.
-pub fn log_names_of_run(
+/// Logs the names of own ship, `own` at a time, and of the targets with own ship's role toward them.
+pub fn log_names_with_roles(
     rec: &mut Recorder,
-    model: &ViewModel,
+    canvas: &Canvas,
     labels: &Labels,
+    ships: &Ships,
+    own: impl Fn(f64) -> String,
     judged: &[Judged],
 ) -> Logged {
-    let own = [own_ship(model)];
-    let colors: Vec<Color> = ship_colors(model, &own).collect();
-    let ships = |time| sighted(model, &own, time);
-    log_names(
-        rec,
-        model,
-        labels,
-        (0, &colors),
-        ships,
-        |index, time| match index.checked_sub(1) {
-            None => own[0].name.clone(),
-            Some(index) => name_with_role(judged, &model.scenario.targets[index].name, time),
-        },
-    )
+    let targets = &canvas.scenario.targets;
+    log_names(rec, canvas, labels, (0, ships), |index, time| {
+        match index.checked_sub(1) {
+            None => own(time),
+            Some(index) => name_with_role(judged, &targets[index].name, time),
+        }
+    })
 }
 
 /// Own ships and targets at a time.
@@ -171,28 +247,27 @@ pub fn sighted(canvas: &Canvas, own: &[DrawnShip], time: f64) -> Option<Vec<Sigh
         .collect()
 }
 
-/// Logs names beside ships at every cursor time: of those from the `first` on, which have `colors`.
+/// Logs names beside ships at every cursor time: of those from the `first` on.
 /// `text` is that of the ship of an index at a time.
 pub fn log_names(
     rec: &mut Recorder,
     canvas: &Canvas,
     labels: &Labels,
-    (first, colors): (usize, &[Color]),
-    ships: impl Fn(f64) -> Option<Vec<Sighted>>,
+    (first, ships): (usize, &Ships),
     text: impl Fn(usize, f64) -> String,
 ) -> Logged {
-    let (mut anchors, mut texts, mut leaders) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut names, mut led) = (Vec::new(), Vec::new());
-    let mut last = vec![None; first + colors.len()];
-    for &time in &canvas.cursor_times {
-        let ships = ships(time).unwrap_or_default();
+    let (mut anchors, mut texts) = (Vec::new(), Vec::new());
+    let (mut names, mut leaders) = (Vec::new(), Vec::new());
+    let mut last = vec![None; ships.colors.len()];
+    for (&time, row) in canvas.cursor_times.iter().zip(&ships.rows) {
         let mut labels = labels.without_ships();
-        for ship in &ships {
+        for ship in row {
             labels.keep_off(ship.covers());
             labels.keep_off_line(vec![ship.place, ship.tip]);
         }
-        let before = (anchors.len(), leaders.len());
-        for (index, ship) in ships.iter().enumerate().skip(first) {
+        let before = anchors.len();
+        let mut led = Vec::new();
+        for (index, ship) in row.iter().enumerate().skip(first) {
             let text = text(index, time);
             let Some(placed) = labels.place(&text, ship.place, last[index]) else {
                 continue;
@@ -200,14 +275,14 @@ pub fn log_names(
             last[index] = Some(placed.number);
             anchors.push(placed.anchor);
             texts.push(text);
-            leaders.extend(placed.leader);
+            led.extend(placed.leader.map(Vec::from));
         }
-        names.push(anchors.len() - before.0);
-        led.push(leaders.len() - before.1);
+        names.push(anchors.len() - before);
+        leaders.push(led);
     }
-    let points = Points2D::update_fields()
-        .with_colors(colors.iter().copied())
-        .with_radii([style::points(0.0)])
+    let colors = ships.colors[first..].iter().copied();
+    let points = points(style::CHART_TEXT, 0.0)
+        .with_colors(colors)
         .with_show_labels(true);
     let leader_style = leader_style();
     let style: [&dyn AsComponents; 2] = [&points, &leader_style];
@@ -215,35 +290,21 @@ pub fn log_names(
         .with_positions(anchors)
         .with_labels(texts)
         .columns(names)?;
-    let leaders = LineStrips2D::update_fields()
-        .with_strips(leaders)
-        .columns(led)?;
+    let columns = anchors.chain(strip_columns(leaders)?);
     let times = canvas.cursor_column();
-    rec.log_moving(path(&[MAP, "names"]), times, &style, anchors.chain(leaders))
+    rec.log_moving(path(&[MAP, "names"]), times, &style, columns)
 }
 
 pub fn log_others(rec: &mut Recorder, canvas: &Canvas) -> Logged {
-    for (index, sets) in canvas.sets.iter().enumerate() {
-        let name = sets.hard.name();
-        if let Some(with_domain) = canvas.with_domain(sets) {
-            let style = set_style(domain_color(canvas, index), DOMAIN_RADIUS);
-            let entity = path(&[MAP, "domain_sets", name]);
-            log_sections(rec, canvas, entity, with_domain, &style)?;
-        }
-        let style = set_style(canvas.target_color(index), HARD_RADIUS);
-        let entity = path(&[MAP, "hard_sets", name]);
-        log_sections(rec, canvas, entity, &sets.hard, &style)?;
+    for (kind, set, color) in shown_sets(canvas) {
+        let style = lines(style::toward_background(color, kind.strength), kind.radius);
+        let entity = path(&[MAP, kind.folder, set.name()]);
+        log_sections(rec, canvas, entity, set, &style)?;
     }
     for (index, target) in canvas.scenario.targets.iter().enumerate() {
         log_target(rec, canvas, index, target)?;
     }
     Ok(())
-}
-
-pub fn set_style(color: Color, radius: f32) -> LineStrips2D {
-    LineStrips2D::update_fields()
-        .with_colors([color])
-        .with_radii([style::points(radius)])
 }
 
 /// Logs the outline of the section at every cursor time.
@@ -254,21 +315,20 @@ pub fn log_sections(
     set: &Obstacle,
     style: &LineStrips2D,
 ) -> Logged {
-    log_outlines(rec, canvas, entity, style, |t| {
-        outline(&set.outer_section(t))
+    log_strips(rec, canvas, entity, style, |time| {
+        vec![outline(&set.outer_section(time))]
     })
 }
 
-pub fn log_outlines(
+/// Logs lines at every cursor time.
+pub fn log_strips(
     rec: &mut Recorder,
     canvas: &Canvas,
     entity: EntityPath,
     style: &LineStrips2D,
-    at: impl Fn(f64) -> Strip,
+    at: impl Fn(f64) -> Vec<Strip>,
 ) -> Logged {
-    let columns = LineStrips2D::update_fields()
-        .with_strips(canvas.cursor_times.iter().map(|&time| at(time)))
-        .columns_of_unit_batches()?;
+    let columns = strip_columns(canvas.cursor_times.iter().map(|&time| at(time)))?;
     rec.log_moving(entity, canvas.cursor_column(), style, columns)
 }
 
@@ -286,16 +346,10 @@ fn log_target(rec: &mut Recorder, canvas: &Canvas, index: usize, target: &Target
     let places = canvas.cursor_times.iter().map(|&t| target.position_at(t));
     let turning = target.ship().filter(|ship| !ship.route.is_empty());
     if let Some(ship) = turning {
-        let times = canvas.cursor_times.iter();
-        let drawn: Vec<Vec<Strip>> = times.map(|&t| drawn_at(canvas, ship, t)).collect();
-        let lengths: Vec<usize> = drawn.iter().map(Vec::len).collect();
-        let columns = LineStrips2D::update_fields()
-            .with_strips(drawn.into_iter().flatten())
-            .columns(lengths)?;
-        let style = LineStrips2D::update_fields()
-            .with_colors([color])
-            .with_radii(DRAWN_RADII.map(style::points));
-        rec.send_columns(entity.clone(), Some(canvas.cursor_column()), columns)?;
+        let style = lines(color, 1.0).with_radii(DRAWN_RADII.map(style::points));
+        let drawn = canvas.cursor_times.iter();
+        let drawn = strip_columns(drawn.map(|&time| drawn_at(canvas, ship, time)))?;
+        rec.send_columns(entity.clone(), Some(canvas.cursor_column()), drawn)?;
         return log_places(rec, canvas, entity, &style, places);
     }
     let mut lines = Lines::default();
@@ -353,36 +407,16 @@ fn log_places(
     rec.log_moving(entity, canvas.cursor_column(), style, columns)
 }
 
-pub fn ship_colors(canvas: &Canvas, own: &[DrawnShip]) -> impl Iterator<Item = Color> {
-    let targets = 0..canvas.scenario.targets.len();
-    let others = targets.map(|index| canvas.target_color(index));
-    own.iter().map(|o| o.color).chain(others)
-}
-
-/// The places of own ships and targets at every cursor time, and their number at each.
-pub fn ship_places(canvas: &Canvas, own: &[DrawnShip]) -> (Vec<Vector>, Vec<usize>) {
-    let targets = &canvas.scenario.targets;
-    let mut places = Vec::new();
-    for &time in &canvas.cursor_times {
-        places.extend(own.iter().map(|o| o.motion.pose_at(time).position));
-        places.extend(targets.iter().map(|t| t.position_at(time)));
-    }
-    let lengths = vec![own.len() + targets.len(); canvas.cursor_times.len()];
-    (places, lengths)
-}
-
 /// Radius of the dots of trails, points.
-const TRAIL_RADIUS: f32 = 2.4;
+pub const TRAIL_RADIUS: f32 = 2.4;
 
 /// Logs a dot per ship and cursor time; the layout shows those up to the cursor. The last one marks
 /// the ship at any zoom.
-pub fn log_trails(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
-    let style = Points2D::update_fields()
-        .with_colors(ship_colors(canvas, own))
-        .with_radii([style::points(TRAIL_RADIUS)]);
-    let (places, lengths) = ship_places(canvas, own);
+pub fn log_trails(rec: &mut Recorder, canvas: &Canvas, ships: &Ships, radius: f32) -> Logged {
+    let style = points(style::OWN_SHIP, radius).with_colors(ships.colors.iter().copied());
+    let (places, lengths) = ships.places();
     let columns = Points2D::update_fields()
-        .with_positions(places.into_iter().map(flat))
+        .with_positions(places.map(flat))
         .columns(lengths)?;
     rec.log_moving(path(&[TRAILS]), canvas.cursor_column(), &style, columns)
 }
@@ -393,9 +427,7 @@ fn log_own_hull(
     entity: EntityPath,
     own: &DrawnShip,
 ) -> Logged {
-    let style = LineStrips2D::update_fields()
-        .with_colors([own.color])
-        .with_radii([1.2, 1.0, 1.2].map(style::points));
+    let style = lines(own.color, 1.0).with_radii([1.2, 1.0, 1.2].map(style::points));
     let mut times = own.motion.speed_changes();
     times.extend(&canvas.cursor_times);
     times.sort_by(f64::total_cmp);
@@ -403,16 +435,12 @@ fn log_own_hull(
     let hull = canvas.scenario.own_ship.hull;
     let ahead = Pose::new(Vector::zeros(), 0.0);
     let symbol = symbol(canvas, &hull, &ahead);
-    let lines = 2 + usize::from(symbol.is_some());
     let hull = outline(&hull.polygon(&ahead));
-    let strips = times.iter().flat_map(|&t| {
+    let drawn = strip_columns(times.iter().map(|&t| {
         let tip = (own.motion.speed_at(t) * vector_seconds(canvas)) as f32;
         let drawn = [hull.clone(), vec![[0.0, 0.0], [tip, 0.0]]];
-        drawn.into_iter().chain(symbol.clone())
-    });
-    let drawn = LineStrips2D::update_fields()
-        .with_strips(strips)
-        .columns(vec![lines; times.len()])?;
+        drawn.into_iter().chain(symbol.clone()).collect()
+    }))?;
     let turns = times
         .iter()
         .map(|&t| rotation(own.motion.pose_at(t).heading));

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use rerun::{AsComponents, Color, LineStrips3D, Mesh3D, Points3D, Transform3D, ViewCoordinates};
 
 use super::chart::{grid_lines, mark_step, multiples, planned_strips};
-use super::ships::{DrawnShip, ship_colors, ship_places};
+use super::ships::{Ships, shown_sets};
 use crate::frame::{Vector, direction, to_port};
 use crate::geometry::Window;
 use crate::obstacle::{Obstacle, SpaceTimeObstacle};
@@ -17,36 +17,19 @@ use crate::text::clock;
 /// Strength of the shadow of a plan on the sea, of 1.
 const SHADOW: f32 = 0.35;
 
-/// Opacity of the body of a set with a ship domain, of 255.
-pub const DOMAIN_ALPHA: u8 = 16;
-/// Opacity of the body of a hard set, of 255.
-const HARD_ALPHA: u8 = 36;
-
-pub fn log_volume(rec: &mut Recorder, model: &ViewModel) -> Logged {
+pub fn log_volume(rec: &mut Recorder, model: &ViewModel, ships: &Ships) -> Logged {
     log_waters(rec, model)?;
     log_planned(rec, model)?;
-    let own = DrawnShip {
-        motion: model.motion,
-        name: "Own ship".to_owned(),
-        color: style::OWN_SHIP,
-    };
-    log_now(rec, model, &[own])
+    log_now(rec, model, ships, &["Own ship"])
 }
 
 /// Logs what does not depend on own ship: the axes, the sets, the desired motion, the targets.
 pub fn log_waters(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     rec.log_static(VOLUME, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
     log_axes(rec, canvas)?;
-    for (index, sets) in canvas.sets.iter().enumerate() {
-        let name = sets.hard.name();
-        if let Some(with_domain) = canvas.with_domain(sets) {
-            let entity = path(&[VOLUME, "domain_sets", name]);
-            let style = (canvas.target_color(index), DOMAIN_ALPHA);
-            log_body(rec, canvas, entity, with_domain, style)?;
-        }
-        let entity = path(&[VOLUME, "hard_sets", name]);
-        let style = (canvas.target_color(index), HARD_ALPHA);
-        log_body(rec, canvas, entity, &sets.hard, style)?;
+    for (kind, set, color) in shown_sets(canvas) {
+        let entity = path(&[VOLUME, kind.folder, set.name()]);
+        log_body(rec, canvas, entity, set, (color, kind.alpha))?;
     }
     log_expected(rec, canvas)
 }
@@ -207,7 +190,8 @@ fn log_expected(rec: &mut Recorder, canvas: &Canvas) -> Logged {
     rec.log_static(path(&[VOLUME, "targets"]), &lines.archetype())
 }
 
-pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
+/// Logs the plane of the cursor with the ships in it. `own` are the names of own ships.
+pub fn log_now(rec: &mut Recorder, canvas: &Canvas, ships: &Ships, own: &[&str]) -> Logged {
     let Window { low, high } = canvas.bounds;
     let frame = [
         [low.x, low.y],
@@ -221,23 +205,23 @@ pub fn log_now(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged
         .with_colors([style::toward_background(style::OWN_SHIP, 0.5)])
         .with_radii([style::points(0.6)]);
     let others = canvas.scenario.targets.iter().map(|t| t.name.as_str());
-    let names = own.iter().map(|o| o.name.as_str()).chain(others);
-    let ships = Points3D::update_fields()
-        .with_colors(ship_colors(canvas, own))
+    let names = own.iter().copied().chain(others);
+    let points = Points3D::update_fields()
+        .with_colors(ships.colors.iter().copied())
         .with_radii([style::points(5.0)])
         .with_labels(names)
         // more names would overlap: they are shown when one is pointed at
-        .with_show_labels(own.len() + canvas.scenario.targets.len() <= 2);
+        .with_show_labels(ships.colors.len() <= 2);
     let entity = path(&[VOLUME, "now"]);
-    let style: [&dyn AsComponents; 2] = [&frame, &ships];
+    let style: [&dyn AsComponents; 2] = [&frame, &points];
 
     let plane = |time: f64| canvas.lifted(Vector::zeros(), time);
     let rises = Transform3D::update_fields()
         .with_many_translation(canvas.cursor_times.iter().map(|&t| plane(t)))
         .columns_of_unit_batches()?;
-    let (places, lengths) = ship_places(canvas, own);
+    let (places, lengths) = ships.places();
     let moves = Points3D::update_fields()
-        .with_positions(places.into_iter().map(|p| canvas.lifted(p, 0.0)))
+        .with_positions(places.map(|p| canvas.lifted(p, 0.0)))
         .columns(lengths)?;
     let columns = rises.chain(moves);
     rec.log_moving(entity, canvas.cursor_column(), &style, columns)

@@ -2,11 +2,10 @@
 
 use rerun::{AsComponents, Points2D, Transform3D};
 
-use super::chart::Strip;
-use super::ships::{HARD_RADIUS, log_outlines, outline, set_style};
+use super::ships::{HARD, log_strips, outline};
 use crate::frame::{Vector, direction};
 use crate::obstacle::{EllipsoidObstacle, Obstacle, PolytopeObstacle, SpaceTimeObstacle};
-use crate::recording::canvas::{Lines, ViewModel, flat, labelled, style};
+use crate::recording::canvas::{Lines, Strip, ViewModel, flat, labelled, lines, points, style};
 use crate::recording::recorder::Recorder;
 use crate::recording::{Logged, PLANE, path};
 
@@ -28,15 +27,13 @@ pub fn log_velocities(rec: &mut Recorder, model: &ViewModel) -> Logged {
     log_axes(rec, model)?;
     for (index, sets) in model.sets.iter().enumerate() {
         let entity = path(&[PLANE, "obstacles", sets.hard.name()]);
-        let style = set_style(style::target(index), HARD_RADIUS);
-        log_outlines(rec, model, entity, &style, |t| {
-            region_outline(model, &sets.hard, t)
+        let style = lines(style::target(index), HARD.radius);
+        log_strips(rec, model, entity, &style, |time| {
+            vec![region_outline(model, &sets.hard, time)]
         })?;
     }
     let entity = path(&[PLANE, "own_ship"]);
-    let style = Points2D::update_fields()
-        .with_colors([style::OWN_SHIP])
-        .with_radii([style::points(4.0)])
+    let style = points(style::OWN_SHIP, 4.0)
         .with_labels(["Own ship"])
         .with_show_labels(true);
     let own = model.cursor_times.iter().map(|&t| {

@@ -3,18 +3,17 @@
 
 use std::path::Path;
 
-use rerun::components::InterpolationMode::{Linear, StepAfter};
-use rerun::{Color, EntityPath, LineStrips2D, LineStrips3D};
+use rerun::{Color, EntityPath, LineStrips3D};
 
 use super::{RecordingError, put};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
-use crate::recording::canvas::{Canvas, Palette, ShownMotion, flat, style};
+use crate::recording::canvas::{Canvas, Palette, ShownMotion, flat, lines, style};
 use crate::recording::recorder::Recorder;
 use crate::recording::views::chart;
-use crate::recording::views::curves::{self, CLEARANCE, SPEED, Series};
+use crate::recording::views::curves::{self, CLEARANCE, Plot, Series};
 use crate::recording::views::explored::log_explored;
-use crate::recording::views::ships::{self, DrawnShip};
+use crate::recording::views::ships::{self, DrawnShip, Ships};
 use crate::recording::views::{land, space_time};
 use crate::recording::{COMPARISON, EXPLORED, Logged, MAP, SUMMARY, VOLUME, layout, path};
 use crate::scenario::Scenario;
@@ -107,13 +106,19 @@ fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
     let canvas = Canvas::new(scenario, &sets, &plans, end, (Palette::OwnShips, PANE));
 
     let own: Vec<DrawnShip> = candidates.iter().map(|c| c.own.clone()).collect();
+    let names: Vec<&str> = own.iter().map(|own| own.name.as_str()).collect();
+    let ships = &Ships::expected(&canvas, &own);
     land::log_land(rec, &canvas)?;
     chart::log_waters(rec, &canvas)?;
     ships::log_others(rec, &canvas)?;
-    ships::log_trails(rec, &canvas, &own)?;
-    log_names(rec, &canvas, &own)?;
+    ships::log_trails(rec, &canvas, ships, ships::TRAIL_RADIUS)?;
+    // names of own ships are shown where they are pointed at
+    let labels = chart::labels(&canvas);
+    ships::log_names(rec, &canvas, &labels, (own.len(), ships), |index, _| {
+        scenario.targets[index - own.len()].name.clone()
+    })?;
     space_time::log_waters(rec, &canvas)?;
-    space_time::log_now(rec, &canvas, &own)?;
+    space_time::log_now(rec, &canvas, ships, &names)?;
     let mut graphs = Vec::new();
     for (index, candidate) in candidates.iter().enumerate() {
         // the first row on top
@@ -134,18 +139,10 @@ fn log(rec: &mut Recorder, compared: &Compared) -> Logged<Recorder> {
             graphs.push(format!("{name} {} of {} edges", drawn.edges, drawn.tested));
         }
     }
-    log_curves(rec, &canvas, &candidates)?;
+    let plots = plots(&canvas, &candidates);
+    curves::log_plots(rec, &plots)?;
     rec.log_markdown(SUMMARY, text(compared.table, &graphs))?;
-    layout::of_comparison(&canvas)
-}
-
-/// Logs the names of the targets. Those of own ships are shown where they are pointed at.
-fn log_names(rec: &mut Recorder, canvas: &Canvas, own: &[DrawnShip]) -> Logged {
-    let colors: Vec<Color> = ships::ship_colors(canvas, own).skip(own.len()).collect();
-    let labels = chart::labels(canvas);
-    let ships = |time| ships::sighted(canvas, own, time);
-    let name = |index: usize, _| canvas.scenario.targets[index - own.len()].name.clone();
-    ships::log_names(rec, canvas, &labels, (own.len(), &colors), ships, name)
+    layout::of_comparison(&canvas, &plots)
 }
 
 /// The entries with a motion. In a sweep a method keeps its colour, weaker with more risk.
@@ -196,11 +193,11 @@ fn log_kept_out_of(
     let faint = style::toward_background(*color, SET_STRENGTH);
     for set in run.obstacles() {
         let below = |view: &str| path(&[view, METHODS, name, "sets", set.name()]);
-        let style = ships::set_style(faint, ships::DOMAIN_RADIUS)
+        let style = lines(faint, ships::DOMAIN.radius)
             .with_labels([format!("{name} avoids: {}", set.name())])
             .with_show_labels(false);
         ships::log_sections(rec, canvas, below(MAP), set, &style)?;
-        let style = (*color, space_time::DOMAIN_ALPHA);
+        let style = (*color, ships::DOMAIN.alpha);
         space_time::log_body(rec, canvas, below(VOLUME), set, style)?;
     }
     Ok(())
@@ -213,11 +210,9 @@ fn log_way(rec: &mut Recorder, canvas: &Canvas, candidate: &Candidate, order: f3
     };
     let strips = chart::strips(canvas, trajectory).into_iter();
     let line = chart::one_line(strips.map(|(_, strip)| strip));
-    let radius = style::points((RADIUS * style.width) as f32);
     let entity = |view: &str| -> EntityPath { path(&[view, METHODS, &own.name, "way"]) };
-    let on_chart = LineStrips2D::new([line.iter().map(|&(p, _)| flat(p))])
-        .with_colors([own.color])
-        .with_radii([radius])
+    let on_chart = lines(own.color, (RADIUS * style.width) as f32)
+        .with_strips([line.iter().map(|&(p, _)| flat(p))])
         .with_labels([own.name.as_str()])
         .with_show_labels(false)
         .with_draw_order(FIRST_ORDER + order);
@@ -230,12 +225,13 @@ fn log_way(rec: &mut Recorder, canvas: &Canvas, candidate: &Candidate, order: f3
     rec.log_static(entity(VOLUME), &in_volume)
 }
 
-/// Logs the distance from the nearest target that keeps course and speed, and the speed.
-fn log_curves(rec: &mut Recorder, canvas: &Canvas, candidates: &[Candidate]) -> Logged {
+/// Plots of the distance from the nearest target that keeps course and speed, and of the speed.
+fn plots(canvas: &Canvas, candidates: &[Candidate]) -> Vec<Plot> {
     let series = |c: &Candidate, values: Vec<f64>| {
         let width = (c.style.width as f32).min(WIDEST);
         Series::new(&c.own.name, c.own.color, width, values)
     };
+    let mut plots = Vec::new();
     let targets = &canvas.scenario.targets;
     if !targets.is_empty() {
         let nearest = |c: &Candidate| -> Vec<f64> {
@@ -248,18 +244,20 @@ fn log_curves(rec: &mut Recorder, canvas: &Canvas, candidates: &[Candidate]) -> 
         };
         let mut curves: Vec<Series> = candidates.iter().map(|c| series(c, nearest(c))).collect();
         curves.push(curves::safety_margin(canvas));
-        // each ends with its motion, so each is an entity
-        for curve in curves {
-            let entity = path(&[CLEARANCE, &curve.name]);
-            let (times, between) = (&canvas.samples, Linear);
-            curves::log_plot(rec, entity, times, between, &[curve])?;
-        }
+        let title = "Distance from the nearest target (m)";
+        // each ends with its motion
+        plots.push(Plot {
+            apart: true,
+            ..Plot::new(title, CLEARANCE, &canvas.samples, curves)
+        });
     }
     let times = curves::step_times(canvas, candidates.iter().map(|c| &c.own.motion));
     let speed = |c: &Candidate| series(c, curves::speeds(&c.own.motion, &times));
-    let speeds: Vec<Series> = candidates.iter().map(speed).collect();
-    let between = StepAfter;
-    curves::log_plot(rec, path(&[SPEED]), &times, between, &speeds)
+    plots.push(Plot::of_speeds(
+        &times,
+        candidates.iter().map(speed).collect(),
+    ));
+    plots
 }
 
 fn text(table: &str, graphs: &[String]) -> String {

@@ -14,6 +14,7 @@ use rerun::{EntityPath, RecordingInfo, TextDocument};
 
 use super::canvas::ViewModel;
 use super::views::rules::Judged;
+use super::views::ships::Ships;
 use super::views::{
     chart, curves, explored, geographic, land, rules, ships, space_time, summary, velocities,
 };
@@ -120,14 +121,19 @@ fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged
     let judged = Judged::of_plan(model, plan);
     let escape = plan.escape.as_ref();
     let lanes = rules::lanes(&judged, escape, model.motion.end().min(model.end));
-    ships::log_ships(rec, model)?;
+    let own = ships::own_ship(model);
+    let ships = &Ships::expected(model, std::slice::from_ref(&own));
+    ships::log_ships(rec, model, ships)?;
     velocities::log_velocities(rec, model)?;
     land::log_land(rec, model)?;
-    let labels = chart::log_chart(rec, model, breaks(&plan.encounters).as_deref())?;
-    ships::log_names_of_run(rec, model, &labels, &judged)?;
+    let broken = breaks(&plan.encounters);
+    let labels = chart::log_chart(rec, model, ships, broken.as_deref())?;
+    let name = |_| own.name.clone();
+    ships::log_names_with_roles(rec, model, &labels, ships, name, &judged)?;
     geographic::log_geographic(rec, model)?;
-    space_time::log_volume(rec, model)?;
-    let least = curves::log_curves(rec, model)?;
+    space_time::log_volume(rec, model, ships)?;
+    let plots = curves::plots(model);
+    curves::log_plots(rec, &plots)?;
     let folders = [path(&[EXPLORED]), path(&[VOLUME, "explored"])];
     let drawn = explored::log_explored(rec, model, model.run, &folders)?;
     rec.log_markdown(SUMMARY, summary::text(model, plan, drawn))?;
@@ -140,5 +146,5 @@ fn log_run(rec: &mut Recorder, model: &ViewModel, plan: &PlanDocument) -> Logged
     let marks = rules::marks(&judged, escape, |t| model.motion.pose_at(t).position);
     rules::log_marks(rec, &marks)?;
     rules::log_marks_in_volume(rec, model, &marks)?;
-    layout::of_run(model, lanes.len(), has_legs, least)
+    layout::of_run(model, lanes.len(), has_legs, &plots)
 }

@@ -8,7 +8,7 @@ use super::{RecordingError, encoding_error, put};
 use crate::document::{PlanDocument, SimulationDocument};
 use crate::recording::canvas::ClosedLoop;
 use crate::recording::recorder::Recorder;
-use crate::recording::views::{chart, closed_loop, land, rules, ships};
+use crate::recording::views::{chart, closed_loop, curves, land, rules, ships};
 use crate::recording::{EVENTS, Logged, SIMULATION, SUMMARY, TIMELINE, layout, path};
 use crate::scenario::Scenario;
 use crate::text::{clock, rounded};
@@ -91,12 +91,13 @@ fn log(rec: &mut Recorder, simulated: &Simulated) -> Logged<Recorder> {
     let lanes = rules::lanes(&judged, None, model.canvas.end);
     land::log_on_chart(rec, &model.canvas)?;
     closed_loop::log_chart(rec, &model, &judged)?;
-    closed_loop::log_curves(rec, &model)?;
+    let plots = closed_loop::plots(&model);
+    curves::log_plots(rec, &plots)?;
     rules::log_lanes(rec, &lanes)?;
     let marks = rules::marks(&judged, None, |t| model.own_at(t).0.position);
     rules::log_marks(rec, &marks)?;
     log_events(rec, document)?;
-    layout::of_simulation(&model, lanes.len())
+    layout::of_simulation(&model.canvas, lanes.len(), &plots)
 }
 
 fn key(model: &ClosedLoop) -> String {
