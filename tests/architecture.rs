@@ -317,9 +317,10 @@ fn all_sources() -> Vec<(String, String)> {
     let mut files = Vec::new();
     sources(&root.join("src"), &mut files);
     sources(&root.join("crates"), &mut files);
-    // the build script and the examples are programs of their own
+    // the build script, the examples and the benchmarks are programs of their own
     files.retain(|file| *file != root.join("src/build.rs"));
-    files.retain(|file| !below(root, file).contains("/examples/"));
+    let is_program = |path: String| path.contains("/examples/") || path.contains("/benches/");
+    files.retain(|file| !is_program(below(root, file)));
     assert!(files.len() > 20, "{files:?}");
     let read = |file: &PathBuf| (below(root, file), text_of(file));
     files.iter().map(read).collect()

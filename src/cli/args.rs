@@ -548,6 +548,7 @@ impl Written {
             files: { self.json.then_some(("--json", Path::new(STDOUT))) }
                 .into_iter()
                 .collect(),
+            read: Vec::new(),
         })
     }
 }

@@ -35,6 +35,7 @@ pub fn plan(args: &PlanArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     wanted
         .files
         .extend(route.as_ref().map(|route| ("--route", route.file)));
+    wanted.read.extend(args.previous.as_deref());
     let products = Products::prepare(found, wanted)?;
     let previous = args.previous.as_ref();
     let previous = previous.map(|file| Previous::read(file, args.ignore_previous));

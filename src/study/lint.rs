@@ -16,6 +16,7 @@ use crate::scenario::Scenario;
 use crate::scenario::import::Declared;
 use crate::target::{Motion, Target};
 use crate::text::counted;
+use crate::trajectory::Segment;
 
 const INSTANTS: usize = 400;
 
@@ -75,8 +76,15 @@ fn targets(scenario: &Scenario, sets: &[TargetSets]) -> Vec<LintTargetDocument> 
                 to_set = to_set.min(distance(scenario.desired.position_at(time)));
             }
         }
+        let mut legs = scenario.desired.legs().iter();
+        let is_met = legs.any(|leg| {
+            let pose = Pose::new(leg.start, heading_of(leg.direction));
+            let duration = leg.end_time() - leg.start_time;
+            let along = Segment::straight(pose, leg.start_time, duration, leg.speed);
+            sets.hard.first_contact(&along, 0.0).is_some()
+        });
         // negated on purpose: a NaN matters
-        let matters = if !(to_set > 0.0) {
+        let matters = if is_met || !(to_set > 0.0) {
             Matters::Meets
         } else if !(to_reach > (fastest + top_speed(target)) * step) {
             Matters::Clear
@@ -114,7 +122,7 @@ fn all(scenario: &Scenario, declared: &Declared, targets: &[LintTargetDocument])
         && targets.iter().all(|t| t.matters != Matters::Meets)
     {
         findings.push(
-            "no hard set in the way: with hulls alone own ship may hold its course".to_owned(),
+            "no hard set in the way: with hulls alone own ship may keep to its route".to_owned(),
         );
     }
     findings

@@ -150,7 +150,7 @@ fn no_shipped_scenario_has_a_probable_mistake() {
 /// A fairway whose ship keeps off the route, a case that its table and others count differently, and
 /// horizons long after the arrival, at which ships pass over the last waypoint.
 const EXPECTED: [&str; 9] = [
-    "ZAM_Sample-2_1_T-1: no hard set in the way: with hulls alone own ship may hold its course",
+    "ZAM_Sample-2_1_T-1: no hard set in the way: with hulls alone own ship may keep to its route",
     "OT-GW, OT-GW, OT-SO: target_ship_1: meets own ship at 2100 s where it lies after its mission, which ends at 1800 s",
     "imazu-03: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",
     "imazu-07: target 1: meets own ship at 4348 s where it lies after its mission, which ends at 3600 s",

@@ -277,6 +277,20 @@ fn two_outputs_are_two_files() {
         ";
     let table = table.replace("HEAD_ON", scenario);
     folder.refuses(&table);
+    // nor is one that is read, also where a link leads there
+    for (name, from) in [
+        ("in.csv", scenario),
+        ("before.csv", "scenarios/colregs/give-way.toml"),
+    ] {
+        std::fs::copy(from, folder.at(name)).expect("copied");
+    }
+    std::os::unix::fs::symlink(folder.at("in.csv"), folder.at("link.svg")).expect("a link");
+    folder.refuses(
+        "
+        plan DIR/in.csv --route DIR/in.csv | --route: DIR/in.csv: a file that is read, which would be overwritten
+        plan DIR/in.csv --figure DIR/link.svg | --figure: DIR/link.svg: a file that is read
+        plan DIR/in.csv --previous DIR/before.csv --route DIR/before.csv | --route: DIR/before.csv: a file that is read",
+    );
     // results beside one another are no clash
     let [all, csv] = ["all", "all/rows.csv"].map(|name| folder.at(name));
     let words = [

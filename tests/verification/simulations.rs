@@ -53,6 +53,13 @@ fn with_an_event() -> Value {
     document
 }
 
+/// Events ask for a plan when own ship's ends before another could take effect, so that none is made: the steps
+/// then do not begin anew when the period ends.
+#[test]
+fn events_that_make_no_plan_leave_the_document_sound() {
+    sailed(parsed(&fault("event-after-the-last-plan.toml")));
+}
+
 /// Every plan but the first is left out in turn, with all that was said when it was made. No longer
 /// period or step explains that it is missing. The plans of a mission in parts end short, so that
 /// the next ones are due early.

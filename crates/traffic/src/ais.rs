@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use searoom_geometry::frame::{
-    Geographic, KNOT_MPS, NAUTICAL_MILE_M, Vector, heading_from_course_deg,
+    Geographic, KNOT_MPS, NAUTICAL_MILE_M, Vector, heading_from_course_deg, radians_from_deg,
 };
 
 use crate::assembly::Message;
@@ -48,17 +48,16 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        let degrees = PI / 180.0;
         Self {
             accurate_m: 10.0,
             inaccurate_m: 50.0,
             not_measured_m: 0.5 * NAUTICAL_MILE_M,
             least_course_mps: KNOT_MPS,
-            course_error: 2.0 * degrees,
-            heading_error: 2.0 * degrees,
+            course_error: radians_from_deg(2.0),
+            heading_error: radians_from_deg(2.0),
             heading_from_mps: 5.0 * KNOT_MPS,
-            heading_from_course: 15.0 * degrees,
-            class_a_m: [500.0, 70.0],
+            heading_from_course: radians_from_deg(15.0),
+            class_a_m: [500.0, 130.0],
             class_b_m: [50.0, 15.0],
             interval_s: [10.0, 30.0],
             latent_s: 60.0,
@@ -66,13 +65,16 @@ impl Default for Settings {
     }
 }
 
-/// Longest ship and greatest beam, metres: more is typed in wrongly.
-const LONGEST_M: f64 = 460.0;
+/// Longest ship, metres: more is typed in wrongly.
+const LONGEST_M: f64 = 500.0;
 
 /// Metres for a minute of latitude, and for one of longitude at the equator. Each is the largest on WGS 84, so
 /// that half a step is not too small.
 const MINUTE_NORTH_M: f64 = 1861.7;
 const MINUTE_EAST_M: f64 = 1855.4;
+
+/// How far the clock of a station may be behind, seconds.
+const CLOCK_S: f64 = 2.0;
 
 /// Where the fields of a message with a position are, and how they are scaled.
 struct Layout {
@@ -185,23 +187,31 @@ pub(crate) fn report(message: &Message, settings: &Settings) -> Result<Report, D
             report.fix = Some(read.mark(notes));
             report.name = name(bits, 43, 20);
             report.type_code = Some(bits.unsigned(38, 5) as u8);
-            report.hull = Some(read.hull(219, settings.class_b_m, notes));
+            // a mark may be a platform
+            report.hull = Some(read.hull(219, settings.class_a_m, notes));
             if bits.flag(269) {
                 report.kind = Kind::VirtualMark;
             }
             // without a second the flag means nothing
             if bits.flag(259) && bits.unsigned(253, 6) < 60 {
                 notes.add(Note::OffPosition);
+                let adrift = |fix: Fix| Fix {
+                    velocity: VelocitySet::UNKNOWN,
+                    ..fix
+                };
+                report.fix = report.fix.map(adrift);
             }
         }
         24 => match bits.unsigned(38, 2) {
             0 => report.name = name(bits, 40, 20),
+            1 if bits.len < 162 => return Err(Dropped::TooShort),
             1 => {
                 report.type_code = Some(bits.unsigned(40, 8) as u8);
                 report.call_sign = name(bits, 90, 7);
                 // the bits of the size are the number of the mother ship
                 if report.kind == Kind::Craft {
-                    report.mother_ship = Some(Identity::Mmsi(bits.unsigned(132, 30)));
+                    let mother_ship = bits.unsigned(132, 30);
+                    report.mother_ship = (mother_ship > 0).then_some(Identity::Mmsi(mother_ship));
                     notes.add(Note::NoSize);
                     let [length, beam] = settings.class_b_m;
                     report.hull = Some(HullSet::unknown(length, beam));
@@ -224,9 +234,9 @@ pub(crate) fn report(message: &Message, settings: &Settings) -> Result<Report, D
 fn kind(number: u32, mmsi: u32) -> Kind {
     match (number, mmsi / 1_000_000) {
         (_, 970 | 972 | 974) => Kind::Distress,
-        (4, _) => Kind::BaseStation,
-        (9, _) => Kind::Aircraft,
-        (21, _) => Kind::Mark,
+        (4, _) | (_, 0..=9) => Kind::BaseStation,
+        (9, _) | (_, 111) => Kind::Aircraft,
+        (21, _) | (_, 990..=999) => Kind::Mark,
         (_, 980..=989) => Kind::Craft,
         (1..=3 | 5 | 11, _) => Kind::ClassA,
         (27, _) => Kind::Ship,
@@ -276,11 +286,7 @@ impl Reading<'_> {
     /// Position and motion of classes A and B and of aircraft.
     fn moving(&self, layout: &Layout, notes: &mut Notes) -> Fix {
         let bits = self.bits;
-        let (mut time, is_measured) = self.time(layout.second, notes);
-        if layout.heading.is_none() {
-            // an aircraft's reports are not dated by a class
-            time.least = time.least.min(self.received - self.settings.interval_s[0]);
-        }
+        let (time, is_measured) = self.time(layout.second, notes);
         let position = self.position(layout.longitude, layout.accuracy, is_measured, notes);
         let speed_code = bits.unsigned(layout.speed, 10);
         let course_code = bits.unsigned(layout.course, 12);
@@ -380,16 +386,26 @@ impl Reading<'_> {
         }
     }
 
-    /// When the fix was taken, and whether it was measured: in the minute that is nearest to the reception.
+    /// When the fix was taken, and whether it was measured: in the minute that is nearest to the reception, or
+    /// in the one before where that is in the future.
     fn time(&self, from: usize, notes: &mut Notes) -> (Interval, bool) {
         let second = self.bits.unsigned(from, 6);
         if second < 60 {
             let since = (self.received - f64::from(second)).rem_euclid(60.0);
-            let at = match since <= 30.0 {
-                true => self.received - since,
-                false => self.received - since + 60.0,
-            };
-            return (Interval::new(at, at + 1.0), true);
+            let at = self.received - since;
+            let ahead = 60.0 - since;
+            return (
+                match since {
+                    ..=30.0 => Interval::new(at, at + 1.0),
+                    _ if ahead <= CLOCK_S => Interval::new(at + 60.0, at + 61.0),
+                    // a late report, or a clock that is wrong
+                    _ => {
+                        notes.add(Note::AgeUnknown);
+                        Interval::new(at, at + 61.0)
+                    }
+                },
+                true,
+            );
         }
         let [class_a, class_b] = self.settings.interval_s;
         let age = match self.bits.unsigned(0, 6) {
@@ -445,7 +461,7 @@ impl Reading<'_> {
         }
         // a degree of longitude is longest at the edge toward the equator
         let edge = (at.lat_deg.abs() - 0.5 / (60.0 * parts)).max(0.0);
-        let east = MINUTE_EAST_M * edge.to_radians().cos().max(0.0);
+        let east = MINUTE_EAST_M * radians_from_deg(edge).cos().max(0.0);
         Some(PositionSet {
             at,
             half_cell_m: Vector::new(east, MINUTE_NORTH_M) * (0.5 / parts),
@@ -460,7 +476,9 @@ impl Reading<'_> {
             return Directions::ALL;
         };
         if speed.least < self.settings.least_course_mps {
-            notes.add(Note::SlowCourse);
+            if speed.most.is_finite() {
+                notes.add(Note::SlowCourse);
+            }
             return Directions::ALL;
         }
         about(degrees, half_step, self.settings.course_error)
@@ -487,12 +505,12 @@ impl Reading<'_> {
     /// Rate of turn from its root in 4.733 degrees a minute, starboard positive.
     fn turn_rate(&self, from: usize) -> Option<Interval> {
         let code = self.bits.signed(from, 8);
-        let rate = |root: f64| (root / 4.733).powi(2) * PI / 180.0 / 60.0;
+        let rate = |root: f64| radians_from_deg((root / 4.733).powi(2)) / 60.0;
         let root = f64::from(code.abs());
         let size = match code.abs() {
             128 => return None,
             // to this side at more than 5° in 30 s
-            127 => Interval::new(10.0 * PI / 180.0 / 60.0, f64::INFINITY),
+            127 => Interval::new(radians_from_deg(10.0) / 60.0, f64::INFINITY),
             126 => Interval::new(rate(125.5), f64::INFINITY),
             0 => return Some(Interval::new(-rate(0.5), rate(0.5))),
             _ => Interval::new(rate(root - 0.5), rate(root + 0.5)),
@@ -512,22 +530,15 @@ impl Reading<'_> {
         let (long, wide) = (bow + stern, port + starboard);
         if long == 0.0 || wide == 0.0 {
             notes.add(Note::NoSize);
-            let mut hull = HullSet::unknown(length.max(long), beam.max(wide));
-            if long > 0.0 {
-                notes.add(Note::NoAntenna);
-            }
-            if long == 0.0 && wide > 0.0 {
-                hull.port.most = beam.max(wide);
-            }
-            return hull;
+            return HullSet::unknown(length.max(long), beam.max(wide));
         }
         if long < wide || long > LONGEST_M && bow < 511.0 && stern < 511.0 {
             notes.add(Note::WrongSize);
-            let most = long.max(wide);
+            let most = long.max(wide) + 1.0;
             return HullSet::unknown(most, most);
         }
         // a code that means "or more" reaches as far as any ship
-        let [longest, widest] = Settings::default().class_a_m;
+        let [longest, widest] = self.settings.class_a_m;
         let mut side = |code: f64, highest: f64, largest: f64| match code >= highest {
             true => {
                 notes.add(Note::SizeOrMore);
@@ -566,7 +577,7 @@ fn steps(number: f64, step: f64) -> Interval {
 fn about(degrees: f64, half_step: f64, error: f64) -> Directions {
     Directions {
         middle: heading_from_course_deg(degrees),
-        half: half_step.to_radians() + error,
+        half: radians_from_deg(half_step) + error,
     }
 }
 

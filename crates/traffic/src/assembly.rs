@@ -11,7 +11,7 @@ const WITHIN_S: f64 = 3.0;
 /// Messages that may wait for parts at a time.
 const MOST_WAITING: usize = 64;
 
-/// Most parts of a message that is kept: five slots fit into five sentences.
+/// Most parts of a message: their number has one digit.
 const MOST_PARTS: usize = 9;
 
 /// Longest armour of one part, bytes.
@@ -28,7 +28,10 @@ pub(crate) struct Message {
 /// A message of which parts are missing.
 #[derive(Debug)]
 struct Waiting {
-    since: f64,
+    /// Of the reader's clock.
+    arrived: f64,
+    /// Of the tag block, where a part has had one.
+    time: Option<f64>,
     source: Option<SourceId>,
     group: Option<u32>,
     channel: Option<u8>,
@@ -51,6 +54,11 @@ pub(crate) struct Assembler {
     waiting: Vec<Waiting>,
 }
 
+/// True where two times are of one message, as far as both are known.
+fn is_within(a: Option<f64>, b: Option<f64>) -> bool {
+    a.zip(b).is_none_or(|(a, b)| (a - b).abs() <= WITHIN_S)
+}
+
 /// True where two keys may be of one message: a later part may lack what the first one says.
 fn may_be_same<T: PartialEq>(a: Option<T>, b: Option<T>) -> bool {
     a.is_none() || b.is_none() || a == b
@@ -68,6 +76,10 @@ impl Waiting {
             && self.sequence == part.sequence
             && may_be_same(self.channel, part.channel)
     }
+
+    fn is_fresh(&self, part: &Part, now: f64) -> bool {
+        is_within(Some(self.arrived), Some(now)) && is_within(self.time, part.tag.time)
+    }
 }
 
 impl Assembler {
@@ -75,7 +87,7 @@ impl Assembler {
     pub fn add(
         &mut self,
         part: &Part,
-        (source, received): (Option<SourceId>, f64),
+        (source, now): (Option<SourceId>, f64),
         counts: &mut Counts,
     ) -> Option<Message> {
         if part.count == 1 {
@@ -85,31 +97,27 @@ impl Assembler {
                 return None;
             }
             return Some(Message {
-                received,
+                received: part.tag.time.unwrap_or(now),
                 source,
                 is_own: part.is_own,
                 bits,
             });
         }
-        let before = self.waiting.len();
-        // a clock that was set back ends what waits, too
-        let is_fresh = |w: &Waiting| (received - w.since).abs() <= WITHIN_S;
-        self.waiting.retain(is_fresh);
-        (self.waiting.len()..before).for_each(|_| counts.drop(Dropped::LateParts));
         if part.armoured.len() > MOST_ARMOUR {
             counts.drop(Dropped::Fields);
             return None;
         }
         let slot = usize::from(part.number - 1);
-        let found = self.waiting.iter().position(|w| w.is_of(part, source));
-        // the same part again is that of a new message
+        let found = self.fitting(part, source);
+        // the same part again, or one that comes late, is that of a new message
         let found = found.filter(|at| {
-            let is_new = self.waiting[*at].parts[slot].is_none();
-            if !is_new {
+            let waiting = &self.waiting[*at];
+            let fits = waiting.parts[slot].is_none() && waiting.is_fresh(part, now);
+            if !fits {
                 self.waiting.remove(*at);
                 counts.drop(Dropped::LateParts);
             }
-            is_new
+            fits
         });
         let at = found.unwrap_or_else(|| {
             if self.waiting.len() >= MOST_WAITING {
@@ -117,7 +125,8 @@ impl Assembler {
                 counts.drop(Dropped::TooManyParts);
             }
             self.waiting.push(Waiting {
-                since: received,
+                arrived: now,
+                time: part.tag.time,
                 source,
                 group: part.tag.group,
                 channel: part.channel,
@@ -131,6 +140,7 @@ impl Assembler {
         let waiting = &mut self.waiting[at];
         waiting.source = waiting.source.or(source);
         waiting.channel = waiting.channel.or(part.channel);
+        waiting.time = waiting.time.or(part.tag.time);
         let mut armour = Armour {
             bytes: [0; MOST_ARMOUR],
             length: part.armoured.len() as u8,
@@ -152,10 +162,31 @@ impl Assembler {
             return None;
         }
         Some(Message {
-            received: whole.since,
+            received: whole.time.unwrap_or(whole.arrived),
             source: whole.source,
             is_own: whole.is_own,
             bits,
         })
+    }
+
+    /// The message that a part belongs to. Where a part that lacks a source or a channel may be of several, it
+    /// is of none.
+    fn fitting(&self, part: &Part, source: Option<SourceId>) -> Option<usize> {
+        let is_exact = |w: &&Waiting| w.source == source && w.channel == part.channel;
+        let index = |of: &Waiting| self.waiting.iter().position(|w| std::ptr::eq(w, of));
+        let mut fitting = self.waiting.iter().filter(|w| w.is_of(part, source));
+        let exact = fitting.clone().find(is_exact);
+        match (exact, fitting.next(), fitting.next()) {
+            (Some(exact), ..) => index(exact),
+            (None, Some(only), None) => index(only),
+            _ => None,
+        }
+    }
+
+    /// Ends what waits, and counts it.
+    pub fn finish(&mut self, counts: &mut Counts) {
+        self.waiting
+            .drain(..)
+            .for_each(|_| counts.drop(Dropped::LateParts));
     }
 }

@@ -1,4 +1,4 @@
-//! The bits of a message of AIS.
+//! The bits of a message of AIS. A sentence holds them as its armour: a character for each six.
 
 /// The longest message that is kept: five slots have 1,192 bits.
 const MOST_WORDS: usize = 20;
@@ -33,7 +33,8 @@ impl Bits {
         }
     }
 
-    /// Adds the bits of a part. False for a character that is none, or more bits than a message has.
+    /// Adds the bits of a part. False for a character that stands for no six bits, or more bits than a message
+    /// has.
     pub fn push(&mut self, armoured: &[u8], fill: u8) -> bool {
         let from = self.len;
         if from + 6 * armoured.len() > MOST_BITS {

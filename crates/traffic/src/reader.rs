@@ -85,11 +85,13 @@ impl Reader {
         }
     }
 
-    /// Reads the line at the end of a stream that has no line end.
+    /// Reads the line at the end of a stream that has no line end, and ends messages that wait for parts.
     pub fn finish(&mut self, now: f64) -> Option<Report> {
         self.skips = false;
         let line = std::mem::take(&mut self.begun);
-        self.line(&line, now)
+        let report = self.line(&line, now);
+        self.assembler.finish(&mut self.counts);
+        report
     }
 
     /// The report of a line, or of the message that it completes.
@@ -114,8 +116,7 @@ impl Reader {
             }
         };
         let source = part.tag.source.map(|name| self.source_of(name));
-        let received = part.tag.time.unwrap_or(now);
-        let message = (self.assembler).add(&part, (source, received), &mut self.counts)?;
+        let message = (self.assembler).add(&part, (source, now), &mut self.counts)?;
         self.counts.message(message.bits.unsigned(0, 6) as u8);
         match ais::report(&message, &self.settings) {
             Ok(report) => {

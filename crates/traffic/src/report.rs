@@ -262,7 +262,7 @@ notes! {
     NoPosition => "heard without a place",
     /// Time stamps 61 to 63.
     NotMeasured => "the place is typed in, reckoned, or without a fix",
-    /// Time stamp 60, or none.
+    /// Time stamp 60, or one that is ahead of the reception: a minute more or less.
     AgeUnknown => "the age of the fix is unknown",
     /// A satellite or a late station: the fix is older than 5 s.
     Latent => "the fix may be a minute older",
@@ -279,8 +279,8 @@ notes! {
     /// No heading code, or a number from 360 to 510.
     NoHeading => "no heading",
     /// No heading, and fast enough for the course to stand for it.
-    HeadingFromCourse => "the heading is taken from the course, ±15°",
-    /// All dimensions are 0.
+    HeadingFromCourse => "the heading is taken from the course, and wider",
+    /// Length or beam is 0.
     NoSize => "no size",
     /// Length and beam without the place of the antenna.
     NoAntenna => "the place of the antenna is unknown",

@@ -90,7 +90,8 @@ fn tag(block: &[u8]) -> Option<Tag<'_>> {
     Some(tag)
 }
 
-/// The part of a message in a line without its line end. A tag block with a wrong check sum is as none.
+/// The part of a message in a line without its line end, and what of the line was ignored: a tag block with a
+/// wrong check sum is as none.
 pub(crate) fn part(line: &[u8]) -> Result<(Part<'_>, Option<Dropped>), Dropped> {
     let mut rest = line;
     let (mut found, mut ignored) = (Tag::default(), None);

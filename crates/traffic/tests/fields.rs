@@ -197,20 +197,20 @@ fn an_accuracy_is_a_radius() {
 #[test]
 fn a_fix_is_dated_by_its_second() {
     // received at a full minute
-    for (second, at) in [
-        (59, -1.0),
-        (30, -30.0),
-        (31, -29.0),
-        (29, 29.0),
-        (0, 0.0),
-        (2, 2.0),
-    ] {
+    for (second, at) in [(59, -1.0), (30, -30.0), (31, -29.0), (0, 0.0), (2, 2.0)] {
         let fix = fix(&class_a().with(137, 6, second));
         assert_eq!(
             fix.time,
             Interval::new(NOW + at, NOW + at + 1.0),
             "{second}"
         );
+    }
+    // ahead of the reception: a clock, or a report that is nearly a minute late
+    for second in [3, 29] {
+        let late = class_a().with(137, 6, second);
+        let at = NOW + second as f64;
+        assert_eq!(fix(&late).time, Interval::new(at - 60.0, at + 1.0));
+        assert!(has(&late, Note::AgeUnknown), "{second}");
     }
     let unknown = class_a().with(137, 6, 60);
     assert_eq!(fix(&unknown).time, Interval::new(NOW - 10.0, NOW));
@@ -369,7 +369,7 @@ fn a_size_says_where_the_antenna_is_or_that_it_does_not() {
     };
     assert_eq!(most([60, 51, 14, 15]), [60.5, 51.5, 14.5, 15.5]);
     // nothing is known
-    assert_eq!(most([0, 0, 0, 0]), [500.0, 500.0, 70.0, 70.0]);
+    assert_eq!(most([0, 0, 0, 0]), [500.0, 500.0, 130.0, 130.0]);
     assert!(has(&sent([0, 0, 0, 0]), Note::NoSize));
     // length and beam alone
     assert_eq!(most([0, 200, 0, 30]), [200.5, 200.5, 30.5, 30.5]);
@@ -386,10 +386,10 @@ fn a_size_says_where_the_antenna_is_or_that_it_does_not() {
     }
     // this or more
     assert_eq!(most([511, 20, 20, 20])[0], 511.0);
-    assert_eq!(most([200, 200, 63, 20])[2], 70.0);
+    assert_eq!(most([200, 200, 63, 20])[2], 130.0);
     assert!(has(&sent([511, 20, 20, 20]), Note::SizeOrMore));
     // typed in wrongly: in all directions
-    for sides in [[5, 5, 30, 30], [300, 161, 20, 20]] {
+    for sides in [[5, 5, 30, 30], [300, 201, 20, 20]] {
         assert!(has(&sent(sides), Note::WrongSize), "{sides:?}");
         let all = most(sides);
         assert!(
@@ -433,6 +433,8 @@ fn a_craft_has_the_number_of_its_mother_ship_and_no_size() {
     let craft = part_b(982_570_001).report();
     assert_eq!(craft.mother_ship, Some(Identity::Mmsi(257_000_009)));
     assert!(craft.notes.has(Note::NoSize) && craft.kind == Kind::Craft);
+    let none = part_b(982_570_001).with(132, 30, 0).report();
+    assert!(none.mother_ship.is_none());
     let ship = part_b(SHIP).report();
     assert!(ship.mother_ship.is_none() && ship.hull.is_some());
 }
@@ -488,8 +490,14 @@ fn what_is_no_ship_says_so() {
     let mark = Message::new(21, 992_570_001, 272).with(253, 6, 30);
     assert_eq!(kind(mark.clone()), Kind::Mark);
     assert_eq!(kind(mark.clone().with(269, 1, 1)), Kind::VirtualMark);
+    assert_eq!(fix(&mark).velocity.speed, Interval::new(0.0, 0.0));
     let off = mark.with(259, 1, 1);
+    // adrift
+    assert_eq!(fix(&off).velocity.speed.most, f64::INFINITY);
     assert!(has(&off, Note::OffPosition) && !has(&off.with(253, 6, 60), Note::OffPosition));
+    // an aircraft is one in every message
+    assert_eq!(kind(Message::new(5, 111_257_001, 424)), Kind::Aircraft);
+    assert_eq!(kind(Message::new(24, 992_570_001, 168)), Kind::Mark);
     // a ship that answers has a place and no velocity
     let answer = fix(&Message::new(11, SHIP, 168));
     assert_eq!(answer.velocity.speed.most, f64::INFINITY);

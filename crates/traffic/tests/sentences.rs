@@ -97,7 +97,8 @@ fn parts_of_two_ships_that_alternate_become_two_messages() {
     }
     let mut reader = reader();
     let lines = groups.iter();
-    let reports = lines.filter_map(|line| reader.line(line.as_bytes(), 1_565_218_799.0));
+    // replayed later, by a clock that stands
+    let reports = lines.filter_map(|line| reader.line(line.as_bytes(), NOW));
     let reports: Vec<Report> = reports.collect();
     assert_eq!(identities(&reports).len(), 2, "{}", reader.counts());
     assert!(
@@ -114,6 +115,17 @@ fn a_part_that_comes_late_or_twice_begins_another_message() {
     assert!(late.line(parts[0].as_bytes(), NOW).is_none());
     assert!(late.line(parts[1].as_bytes(), NOW + 3.1).is_none());
     assert_eq!(late.counts().dropped(Dropped::LateParts), 1);
+    assert!(late.finish(NOW).is_none());
+    assert_eq!(late.counts().dropped(Dropped::LateParts), 2);
+    // a station whose clock is wrong ends no message of another
+    let mut clocks = reader();
+    let wrong = tagged("s:r2,c:9999999999", &part(BRAVO[0], 1, "1", "A"));
+    let lines = [
+        tagged("s:r1,c:1700000000", &part(ALFA[0], 1, "1", "A")),
+        wrong,
+        tagged("s:r1,c:1700000000", &part(ALFA[1], 2, "1", "A")),
+    ];
+    assert_eq!(read(&mut clocks, &lines).len(), 1);
     // the other ship's first part with the same key starts anew
     let other = sentence(&part(BRAVO[0], 1, "1", "A"));
     let mut twice = reader();

@@ -76,10 +76,11 @@ impl<'a> Cycles<'a> {
             }
         };
         let of_period = |time: f64| 0.0 <= time && time <= settings.replan_s;
-        let are_times = of_period(settings.step_s) && of_period(settings.delay_s);
+        let is_step = settings.step_s >= 0.01;
+        let are_times = is_step && of_period(settings.step_s) && of_period(settings.delay_s);
         require(
             are_times,
-            "a step or a delay longer than the time between plans",
+            "a step below 0.01 s, or a step or a delay longer than the time between plans",
             0.0,
         );
         let Some(last) = plans.last() else {
@@ -188,15 +189,18 @@ impl<'a> Cycles<'a> {
     /// True for the time of a step after a plan, if no other one is made in between.
     fn is_step_after(&self, plan: &ReplanDocument, time: f64) -> bool {
         let settings = &self.document.settings;
+        // an event that makes no plan, because own ship's ends before, moves the next time at which one is due
         let events = [
+            Some(plan.t_s),
             Some(plan.start_t_s).filter(|_| plan.followed),
             Some(plan.t_s + settings.replan_s),
         ];
         let events = events.into_iter().flatten();
-        let events = events.filter(|event| *event <= time + self.rounding);
-        let from = events.fold(plan.t_s, f64::max);
-        let steps = ((time - from) / settings.step_s).round();
-        self.is_same(time, from + steps * settings.step_s)
+        let mut events = events.filter(|event| *event <= time + self.rounding);
+        events.any(|from| {
+            let steps = ((time - from) / settings.step_s).round();
+            self.is_same(time, from + steps * settings.step_s)
+        })
     }
 }
 

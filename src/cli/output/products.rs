@@ -48,6 +48,8 @@ pub struct Wanted<'a> {
     pub report: Option<&'a Path>,
     /// Other files that the command writes, each with its option.
     pub files: Vec<(&'static str, &'a Path)>,
+    /// Files that the command reads beside the scenarios.
+    pub read: Vec<&'a Path>,
 }
 
 #[derive(Debug)]
@@ -67,6 +69,7 @@ impl Products {
             plans,
             report,
             files,
+            read,
         } = wanted;
         if recordings.is_some() && !cfg!(feature = "recording") {
             bail!(
@@ -114,7 +117,12 @@ impl Products {
             outputs.extend({ of_scenario.into_iter() }.filter_map(|(o, file)| Some((o, file?))));
         }
         outputs.extend(report.map(|folder| ("--report", folder.join("index.html"))));
-        refuse_overlaps(outputs)?;
+        let read = read.into_iter().map(Path::to_owned);
+        let read: Vec<PathBuf> = { found.iter() }
+            .map(|f| f.file.clone())
+            .chain(read)
+            .collect();
+        refuse_overlaps(&read, outputs)?;
         Ok(Self {
             stems: found.iter().map(|found| found.stem.clone()).collect(),
             recordings,
@@ -392,14 +400,23 @@ impl TableFiles {
 /// Standard output, as the file that other options may name.
 pub const STDOUT: &str = "/dev/stdout";
 
-/// Rejects two options that write the same file.
-fn refuse_overlaps(outputs: Vec<(&'static str, PathBuf)>) -> anyhow::Result<()> {
+/// Rejects an option that writes a file which is `read`, and two options that write the same file.
+fn refuse_overlaps(read: &[PathBuf], outputs: Vec<(&'static str, PathBuf)>) -> anyhow::Result<()> {
+    let read: Vec<PathBuf> = { read.iter() }
+        .filter_map(|file| file.canonicalize().ok())
+        .collect();
     let mut taken: HashMap<PathBuf, &str> = HashMap::new();
     for (option, file) in outputs {
         let at = place(&file);
         // a device keeps nothing
         if at == Path::new("/dev/null") {
             continue;
+        }
+        if read.contains(&at) {
+            let file = file.display();
+            bail!(
+                "{option}: {file}: a file that is read, which would be overwritten; name another"
+            );
         }
         if let Some(other) = taken.insert(at, option) {
             let file = file.display();

@@ -316,8 +316,8 @@ settings! {
         least_s: f64 = 3.0,
         /// Ratio of the costs above which less speed replaces a turn, Rule 8(c).
         speed_price: f64 = 2.0,
-        /// Length of the route after the first contact up to which own ship may follow a target to the last waypoint, in
-        /// turning radii: on a longer one it passes.
+        /// Own ship may follow a target that it does not pass where no more than this is left of the route at the first
+        /// contact, in turning radii. On a longer route it passes.
         follow_radii: f64 = 12.0,
         /// Ratio of the costs above which own ship is on time again by a change of speed that is too short.
         short_price: f64 = 2.0,

@@ -129,7 +129,7 @@ pub(super) fn least_clear<T>(
     let mut blocked = least;
     for (index, &from) in touching.iter().enumerate() {
         let next = touching.get(index + 1).copied().unwrap_or(most);
-        // the least one is known
+        // the least one has been tried
         let here = (index > 0).then_some(from).into_iter();
         let beyond = BEYOND_S.map(|beyond| from + beyond * unit);
         for hold in here.chain(beyond).take_while(|hold| *hold < next) {

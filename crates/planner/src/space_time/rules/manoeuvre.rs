@@ -617,7 +617,7 @@ impl<'s, 'a> Manoeuvres<'s, 'a> {
             self.follows,
         ) {
             (Some(passed), false) => passed,
-            // a ship that own ship follows is never passed
+            // at this speed own ship passes not all of them before the horizon
             (None, true) => leave,
             (Some(_), true) | (None, false) => return None,
         };

@@ -118,7 +118,7 @@ impl Manoeuvres<'_, '_> {
         let latest = self.ample_time().min(contact).max(from);
         let find = |search: &Self, below| search.best(from..=latest, below);
         let passing = self.relaxed(find);
-        // a ship that is followed far costs the more the longer the route is
+        // on a long route own ship passes
         let (route, radius) = (self.context.route, self.problem().own.turning_radius);
         let left = route.length() - self.along_at(contact);
         match left <= self.settings().follow_radii * radius {
@@ -206,7 +206,13 @@ impl Manoeuvres<'_, '_> {
         (self.slows_to_turn, self.follows) = (false, true);
         let following = find(self, below);
         self.follows = false;
-        following.or(passing)
+        let broken = |of: &Manoeuvre| broken_rules(self.problem(), &of.whole.motion);
+        match (following, passing) {
+            (Some(following), Some(passing)) if broken(&following) > broken(&passing) => {
+                Some(passing)
+            }
+            (following, passing) => following.or(passing),
+        }
     }
 
     fn of_the_levels(
@@ -529,6 +535,7 @@ impl Manoeuvres<'_, '_> {
         let faster =
             (self.family.may_speed_up && ordered.fast > ordered.normal).then_some(ordered.fast);
         let speeds: Vec<f64> = match self.slows_to_turn {
+            // no turn is one of a ship that follows
             _ if self.follows => Vec::new(),
             true => slow.clone().filter(|u| *u > 0.0).collect(),
             false => std::iter::once(ordered.normal).chain(faster).collect(),
