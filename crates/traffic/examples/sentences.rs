@@ -40,7 +40,7 @@ fn main() -> std::io::Result<()> {
             println!("  {least:.2} to {most:.2} kn");
         }
         for note in report.notes.iter() {
-            println!("  {}", note.text());
+            println!("  {}", note.word());
         }
     }
     println!("{}", reader.counts());

@@ -231,11 +231,13 @@ pub(crate) fn report(message: &Message, settings: &Settings) -> Result<Report, D
     Ok(report)
 }
 
+/// What sent a message. Default numbers begin with zeros, so a number makes no station of what sends a ship's
+/// position, and none an aircraft: neither would be a target.
 fn kind(number: u32, mmsi: u32) -> Kind {
     match (number, mmsi / 1_000_000) {
         (_, 970 | 972 | 974) => Kind::Distress,
-        (4, _) | (_, 0..=9) => Kind::BaseStation,
-        (9, _) | (_, 111) => Kind::Aircraft,
+        (4, _) => Kind::BaseStation,
+        (9, _) | (5 | 24, 111) => Kind::Aircraft,
         (21, _) | (_, 990..=999) => Kind::Mark,
         (_, 980..=989) => Kind::Craft,
         (1..=3 | 5 | 11, _) => Kind::ClassA,

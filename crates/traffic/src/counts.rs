@@ -2,49 +2,32 @@
 
 use std::fmt;
 
-macro_rules! dropped {
-    ($($(#[doc = $doc:literal])+ $reason:ident => $text:literal,)+) => {
-        /// Why a line or a message did not become a report.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        pub enum Dropped {
-            $($(#[doc = $doc])+ $reason,)+
-        }
-
-        impl Dropped {
-            pub const ALL: &'static [Self] = &[$(Self::$reason),+];
-
-            pub fn text(self) -> &'static str {
-                match self {
-                    $(Self::$reason => $text),+
-                }
-            }
-        }
-    };
-}
-
-dropped! {
-    /// Neither a tag block nor a sentence.
-    NoSentence => "lines that are no sentence",
-    /// Longer than any sentence.
-    TooLong => "lines that are too long",
-    /// The check sum is another, or not there.
-    CheckSum => "wrong or missing check sums",
-    /// That of a tag block.
-    TagCheckSum => "tag blocks with a wrong check sum, which are ignored",
-    /// A sentence that is not VDM or VDO.
-    OtherSentence => "sentences of another kind",
-    /// Fields that are missing or no numbers.
-    Fields => "sentences with wrong fields",
-    /// A part whose others did not come in time.
-    LateParts => "messages without all parts in time",
-    /// More messages wait for parts than are kept.
-    TooManyParts => "messages that waited for parts while too many did",
-    /// Characters that are no armour of AIS.
-    Armour => "messages with a wrong character",
-    /// Fewer bits than its fields need.
-    TooShort => "messages that are too short",
-    /// A message that has no ship's position or size.
-    OtherMessage => "messages of another kind",
+searoom_geometry::words! {
+    /// Why a line or a message did not become a report.
+    pub enum Dropped {
+        /// Neither a tag block nor a sentence.
+        NoSentence => "lines that are no sentence",
+        /// Longer than any sentence.
+        TooLong => "lines that are too long",
+        /// The check sum is another, or not there.
+        CheckSum => "wrong or missing check sums",
+        /// That of a tag block.
+        TagCheckSum => "tag blocks with a wrong check sum, which are ignored",
+        /// A sentence that is not VDM or VDO.
+        OtherSentence => "sentences of another kind",
+        /// Fields that are missing or no numbers.
+        Fields => "sentences with wrong fields",
+        /// A part whose others did not come in time.
+        LateParts => "messages without all parts in time",
+        /// More messages wait for parts than are kept.
+        TooManyParts => "messages that waited for parts while too many did",
+        /// Characters that are no armour of AIS.
+        Armour => "messages with a wrong character",
+        /// Fewer bits than its fields need.
+        TooShort => "messages that are too short",
+        /// A message that has no ship's position or size.
+        OtherMessage => "messages of another kind",
+    }
 }
 
 /// How much was read and dropped.
@@ -54,7 +37,7 @@ pub struct Counts {
     pub lines: u64,
     /// Reports that were made.
     pub reports: u64,
-    dropped: [u64; Dropped::ALL.len()],
+    dropped: [u64; Dropped::WORDS.len()],
     /// Messages by their number.
     messages: [u64; 64],
 }
@@ -94,9 +77,10 @@ impl fmt::Display for Counts {
     /// A line for what was read, and one for each reason.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} lines, {} reports", self.lines, self.reports)?;
-        let seen = Dropped::ALL.iter().filter(|why| self.dropped(**why) > 0);
-        for why in seen {
-            write!(f, "\n{} {}", self.dropped(*why), why.text())?;
+        for (word, why) in Dropped::WORDS {
+            if self.dropped(*why) > 0 {
+                write!(f, "\n{} {word}", self.dropped(*why))?;
+            }
         }
         Ok(())
     }

@@ -236,66 +236,48 @@ impl Name {
     }
 }
 
-macro_rules! notes {
-    ($($(#[doc = $doc:literal])+ $note:ident => $text:literal,)+) => {
-        /// Why a field is wider than what was sent, or not there.
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        pub enum Note {
-            $($(#[doc = $doc])+ $note,)+
-        }
-
-        impl Note {
-            pub const ALL: &'static [Self] = &[$(Self::$note),+];
-
-            /// What a user is told.
-            pub fn text(self) -> &'static str {
-                match self {
-                    $(Self::$note => $text),+
-                }
-            }
-        }
-    };
-}
-
-notes! {
-    /// No position code, or one that is not on the earth.
-    NoPosition => "heard without a place",
-    /// Time stamps 61 to 63.
-    NotMeasured => "the place is typed in, reckoned, or without a fix",
-    /// Time stamp 60, or one that is ahead of the reception: a minute more or less.
-    AgeUnknown => "the age of the fix is unknown",
-    /// A satellite or a late station: the fix is older than 5 s.
-    Latent => "the fix may be a minute older",
-    /// No speed code.
-    NoSpeed => "no speed",
-    /// The highest code: this speed or more.
-    SpeedOrMore => "this speed or more",
-    /// Speed 0, course 0 and no heading: encoders send that for what they do not know.
-    ZerosForUnknown => "speed, course and heading look as if they were not known",
-    /// No course code.
-    NoCourse => "no course",
-    /// Below about a knot a course is noise.
-    SlowCourse => "too slow for a course",
-    /// No heading code, or a number from 360 to 510.
-    NoHeading => "no heading",
-    /// No heading, and fast enough for the course to stand for it.
-    HeadingFromCourse => "the heading is taken from the course, and wider",
-    /// Length or beam is 0.
-    NoSize => "no size",
-    /// Length and beam without the place of the antenna.
-    NoAntenna => "the place of the antenna is unknown",
-    /// The highest codes, 511 and 63 m.
-    SizeOrMore => "this long or wide, or more",
-    /// Wider than long, or longer than any ship.
-    WrongSize => "the size is typed in wrongly",
-    /// At anchor, moored or aground, and faster than a knot.
-    StatusContradictsSpeed => "the status contradicts the speed",
-    /// Integrity of the receiver is monitored.
-    Raim => "integrity is monitored",
-    /// The mark says that it is off its position.
-    OffPosition => "off its position",
-    /// The report is as short as real units send it.
-    Short => "the message is short",
+searoom_geometry::words! {
+    /// Why a field is wider than what was sent, or not there.
+    pub enum Note {
+        /// No position code, or one that is not on the earth.
+        NoPosition => "heard without a place",
+        /// Time stamps 61 to 63.
+        NotMeasured => "the place is typed in, reckoned, or without a fix",
+        /// Time stamp 60, or one that is ahead of the reception: a minute more or less.
+        AgeUnknown => "the age of the fix is unknown",
+        /// A satellite or a late station: the fix is older than 5 s.
+        Latent => "the fix may be a minute older",
+        /// No speed code.
+        NoSpeed => "no speed",
+        /// The highest code: this speed or more.
+        SpeedOrMore => "this speed or more",
+        /// Speed 0, course 0 and no heading: encoders send that for what they do not know.
+        ZerosForUnknown => "speed, course and heading look as if they were not known",
+        /// No course code.
+        NoCourse => "no course",
+        /// Below about a knot a course is noise.
+        SlowCourse => "too slow for a course",
+        /// No heading code, or a number from 360 to 510.
+        NoHeading => "no heading",
+        /// No heading, and fast enough for the course to stand for it.
+        HeadingFromCourse => "the heading is taken from the course, and wider",
+        /// Length or beam is 0.
+        NoSize => "no size",
+        /// Length and beam without the place of the antenna.
+        NoAntenna => "the place of the antenna is unknown",
+        /// The highest codes, 511 and 63 m.
+        SizeOrMore => "this long or wide, or more",
+        /// Wider than long, or longer than any ship.
+        WrongSize => "the size is typed in wrongly",
+        /// At anchor, moored or aground, and faster than a knot.
+        StatusContradictsSpeed => "the status contradicts the speed",
+        /// Integrity of the receiver is monitored.
+        Raim => "integrity is monitored",
+        /// The mark says that it is off its position.
+        OffPosition => "off its position",
+        /// The report is as short as real units send it.
+        Short => "the message is short",
+    }
 }
 
 /// A set of notes.
@@ -311,12 +293,10 @@ impl Notes {
         self.0 & (1 << note as u32) != 0
     }
 
-    /// In the order of [`Note::ALL`].
+    /// In the order of [`Note::WORDS`].
     pub fn iter(self) -> impl Iterator<Item = Note> {
-        Note::ALL
-            .iter()
-            .copied()
-            .filter(move |note| self.has(*note))
+        let all = Note::WORDS.iter().map(|(_, note)| *note);
+        all.filter(move |note| self.has(*note))
     }
 }
 

@@ -495,7 +495,12 @@ fn what_is_no_ship_says_so() {
     // adrift
     assert_eq!(fix(&off).velocity.speed.most, f64::INFINITY);
     assert!(has(&off, Note::OffPosition) && !has(&off.with(253, 6, 60), Note::OffPosition));
-    // an aircraft is one in every message
+    // a ship with a default number, or with an aircraft's, is no station and no aircraft
+    for mmsi in [0, 1_193_046, 111_257_001] {
+        assert_eq!(kind(class_a().with(8, 30, mmsi)), Kind::ClassA, "{mmsi}");
+        let class_b = Message::new(18, SHIP, 168).with(8, 30, mmsi);
+        assert_eq!(kind(class_b), Kind::ClassB, "{mmsi}");
+    }
     assert_eq!(kind(Message::new(5, 111_257_001, 424)), Kind::Aircraft);
     assert_eq!(kind(Message::new(24, 992_570_001, 168)), Kind::Mark);
     // a ship that answers has a place and no velocity

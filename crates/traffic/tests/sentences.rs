@@ -203,7 +203,7 @@ fn what_is_dropped_is_counted_by_its_reason() {
             "{line} {}",
             reader.counts()
         );
-        assert!(reader.counts().to_string().contains(why.text()));
+        assert!(reader.counts().to_string().contains(why.word()));
     }
     // own ship's own message
     let own = sentence(&body.replace("VDM", "VDO"));
