@@ -73,5 +73,6 @@ fn measured(time: f64) -> Target {
             ..ShipTrack::exact(pose, 5.0, Hull::new(60.0, 12.0))
         }),
         representation: Representation::Polytope,
+        status: None,
     }
 }

@@ -107,6 +107,7 @@ fn scene(
             ..track.clone()
         }),
         representation: Representation::Polytope,
+        status: None,
     });
     Ok(Scenario {
         title: format!("New York, vessel {own}"),

@@ -186,6 +186,7 @@ impl Drawn {
                 ..ship
             }),
             representation: Representation::Polytope,
+            status: None,
         }
     }
 }

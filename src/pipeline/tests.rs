@@ -40,6 +40,7 @@ fn scenario(target: ShipTrack, compliance: Compliance) -> Scenario {
             name: "other".to_owned(),
             motion: Motion::Ship(target),
             representation: Representation::Polytope,
+            status: None,
         }],
         compliance,
         deadline: 5.0,
@@ -137,6 +138,7 @@ fn in_a_channel(spread: f64) -> Scenario {
             name: name.to_owned(),
             motion: Motion::Sets(Uncertainty::constant(wide(-400.0, y), at_rest.clone())),
             representation: Representation::Polytope,
+            status: None,
         });
     }
     let lateral = |v: f64| Vector::new(-5.0, v);

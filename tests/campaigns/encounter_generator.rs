@@ -214,6 +214,7 @@ fn scene_at(
             ..ship
         }),
         representation: Representation::Polytope,
+        status: None,
     });
     let waypoints = [Vector::zeros(), Vector::new(meeting.path_length, 0.0)];
     let waypoints = waypoints.map(|w| origin.world_coordinates(w));

@@ -73,6 +73,7 @@ fn ship(name: usize, pose: Pose, speed: f64, hull: Hull, spreads: [f64; 2]) -> T
             ..ShipTrack::exact(pose, speed, hull)
         }),
         representation: Representation::Polytope,
+        status: None,
     }
 }
 

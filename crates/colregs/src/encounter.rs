@@ -401,6 +401,7 @@ mod tests {
             name: "other".to_owned(),
             motion,
             representation: Representation::Polytope,
+            status: None,
         };
         let desired = desired(through, &vec![6.0; through.len() - 1]);
         let standard = &Thresholds::STANDARD;

@@ -12,7 +12,7 @@ use searoom_geometry::frame::{
 use searoom_geometry::{ConvexPolygon, ConvexSet};
 use searoom_input::Fault;
 use searoom_model::target::{
-    DomainKind, KnownLeg, Representation, ShipTrack, Target, TimedVelocitySet,
+    DomainKind, KnownLeg, Representation, ShipTrack, Status, Target, TimedVelocitySet,
 };
 use searoom_model::vessel::Hull;
 use sets::{InitialSetDocument, VelocitySetDocument};
@@ -22,6 +22,9 @@ use sets::{InitialSetDocument, VelocitySetDocument};
 pub struct TargetDocument {
     pub name: String,
     pub representation: Representation,
+    /// Navigational status, where it is known. No set and no role follows from it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub status: Option<Status>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ship: Option<ShipDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -48,6 +51,10 @@ pub struct ShipDocument {
     #[serde(default)]
     pub starboard_turn_deg: f64,
     pub turn_rate_deg_per_s: f64,
+    /// How far the hull may be turned from the course to either side; absent where that is as far as
+    /// the course may be.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub heading_spread_deg: Option<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub kept_positions: Option<InitialSetDocument>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -90,6 +97,7 @@ impl TargetDocument {
         Self {
             name: target.name.clone(),
             representation: target.representation,
+            status: target.status,
             ship: target.ship().map(ship),
             initial_set: sets.map(|sets| (&sets.initial).into()),
             velocity_sets: sets
@@ -112,6 +120,7 @@ fn ship(track: &ShipTrack) -> ShipDocument {
         course_spread_deg: deg_from_radians(track.course_spread),
         starboard_turn_deg: deg_from_radians(track.starboard_turn),
         turn_rate_deg_per_s: deg_from_radians(track.turn_rate.abs()),
+        heading_spread_deg: track.heading_spread.map(deg_from_radians),
         kept_positions: (track.kept_positions.clone()).map(|set| (&ConvexSet::from(set)).into()),
         kept_velocities: (track.kept_velocities.clone()).map(|set| (&ConvexSet::from(set)).into()),
         route: (track.route.iter())
@@ -154,6 +163,7 @@ impl ShipDocument {
             course_spread: radians_from_deg(self.course_spread_deg),
             starboard_turn: radians_from_deg(self.starboard_turn_deg),
             turn_rate: radians_from_deg(self.turn_rate_deg_per_s),
+            heading_spread: self.heading_spread_deg.map(radians_from_deg),
             kept_positions: kept("kept_positions", positions)?,
             kept_velocities: kept("kept_velocities", velocities)?,
             route: self.route.iter().map(KnownLegDocument::leg).collect(),

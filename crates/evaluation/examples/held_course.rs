@@ -38,6 +38,7 @@ fn main() -> Result<(), TrajectoryError> {
             ..ShipTrack::exact(place, 5.0, Hull::new(60.0, 12.0))
         }),
         representation: Representation::Polytope,
+        status: None,
     };
     let found = evaluate(&Request {
         targets: &[ferry],

@@ -91,6 +91,7 @@ fn ship(y: f64, speed: f64) -> Target {
             )
         }),
         representation: Representation::Polytope,
+        status: None,
     }
 }
 

@@ -88,6 +88,10 @@ pub struct ShipTrack {
     pub turn_rate: f64,
     /// Positions at t = 0 about the estimate that earlier plans allow, metres; `None` for any.
     pub kept_positions: Option<ConvexPolygon>,
+    /// How far the hull may be turned from the heading at t = 0 to either side, radians, where that is
+    /// known apart from the courses: a ship at rest drifts to any side, and lies in one direction.
+    /// `None` for a hull that lies in the direction of the course.
+    pub heading_spread: Option<f64>,
     /// Velocities that the ship is known to keep to, given or from earlier plans; `None` for any,
     /// and for a ship that may turn.
     pub kept_velocities: Option<ConvexPolygon>,
@@ -120,6 +124,7 @@ impl ShipTrack {
             starboard_turn: 0.0,
             turn_rate: 0.0,
             kept_positions: None,
+            heading_spread: None,
             kept_velocities: None,
             route: Vec::new(),
             time_spread: 0.0,
@@ -287,6 +292,11 @@ impl ShipTrack {
     /// The middle of the headings that the ship may have until `time`, and half their width, radians:
     /// at most half a turn. Of a known route every leg counts, at any time.
     pub fn headings(&self, time: f64) -> (f64, f64) {
+        if let Some(spread) = self.heading_spread {
+            // `min` of a NaN and a number is the number: every heading
+            let half = (spread + self.turn_rate.abs() * time).min(std::f64::consts::PI);
+            return (self.pose.heading, half);
+        }
         let (middle, turned) = if !self.route.is_empty() {
             self.route_headings()
         } else if self.turn_rate == 0.0 {
@@ -469,6 +479,38 @@ searoom_geometry::words! {
     }
 }
 
+searoom_geometry::words! {
+    /// Navigational status.
+    pub enum Status {
+        /// Under way using her engine.
+        UnderWay => "under way",
+        /// At anchor.
+        Anchored => "anchored",
+        /// Not under command.
+        NotUnderCommand => "not under command",
+        /// Restricted in her ability to manoeuvre.
+        Restricted => "restricted",
+        /// Constrained by her draught.
+        ConstrainedByDraught => "constrained by draught",
+        /// Moored.
+        Moored => "moored",
+        /// Aground.
+        Aground => "aground",
+        /// Engaged in fishing.
+        Fishing => "fishing",
+        /// Under way under sail.
+        Sailing => "sailing",
+        /// Towing astern.
+        TowingAstern => "towing astern",
+        /// Pushing ahead or towing alongside.
+        Pushing => "pushing",
+        /// A distress transmitter that is active.
+        Distress => "distress",
+        /// A distress transmitter under test.
+        DistressTest => "distress test",
+    }
+}
+
 /// A tracked target.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
@@ -478,6 +520,8 @@ pub struct Target {
     pub motion: Motion,
     /// Kind of its sets; unused where ellipses are given.
     pub representation: Representation,
+    /// Navigational status, where it is known. No set and no role follows from it.
+    pub status: Option<Status>,
 }
 
 impl Target {

@@ -11,7 +11,7 @@ use super::route::{Route, RouteLeg};
 use super::simulation::simulation;
 use super::speed_limits::SpeedLimit;
 use super::targets::targets;
-use super::{Compliance, Land, Memory, Scenario, SimulationSettings, after, land, limits};
+use super::{Compliance, Land, Memory, Scenario, SimulationSettings, after, land, limits, status};
 use searoom_colregs::TargetMemory;
 use searoom_geometry::frame::{
     GEOREFERENCE_REACH_M, Geographic, Georeference, Pose, Vector, heading_from_course_deg,
@@ -134,6 +134,11 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let targets = targets(&mut root, &plane, time, own_ship.as_ref());
     let (targets, simulated): (Option<Vec<_>>, Option<Vec<_>>) =
         targets.map(|targets| targets.into_iter().unzip()).unzip();
+    for (target, _) in targets.iter().flatten() {
+        if let Some(status) = target.status {
+            status::remark(&target.name, status, &mut remarks);
+        }
+    }
     let simulation = simulation(&mut root, simulated.unwrap_or_default());
     let land = map.zip(margin).map(|(map, margin)| Land { map, margin });
     if let Some(land) = &land {

@@ -10,12 +10,14 @@ use searoom_model::target::{TimedVelocitySet, Uncertainty};
 /// Allowed values of the keys of a tracked ship beside explicit sets.
 const BESIDE_SETS: &str = "nothing beside the sets: they are taken as they are";
 
-const SHIP_KEYS: [&str; 20] = [
+const SHIP_KEYS: [&str; 22] = [
     "position",
     "course_deg",
     "length_m",
     "beam_m",
     "position_std_m",
+    "position_set",
+    "heading_spread_deg",
     "speed_std_mps",
     "speed_std_kn",
     "course_std_deg",
@@ -145,6 +147,11 @@ fn timed_velocity_sets(list: &Field, initial: Option<&ConvexSet>) -> Option<Vec<
         }));
     }
     sets.into_iter().collect()
+}
+
+/// An initial set alone.
+pub(super) fn position_set(field: &Field) -> Option<ConvexSet> {
+    set(field, &INITIAL)
 }
 
 /// A velocity set alone.

@@ -18,6 +18,7 @@ mod route;
 mod schema;
 mod simulation;
 mod speed_limits;
+mod status;
 mod targets;
 #[cfg(test)]
 mod tests;

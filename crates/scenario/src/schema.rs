@@ -12,6 +12,7 @@ use searoom_input::Range;
 use searoom_input::schema::{Schema, choice, having, line_of_text, list, number, or, whole_number};
 use searoom_model::SailedVessel;
 use searoom_model::target::Representation;
+use searoom_model::target::Status;
 use searoom_model::vessel::VesselKind;
 use searoom_planner::{DEFAULT_PLANNER, ObjectiveKind, SearchKind, planner_words};
 
@@ -29,8 +30,16 @@ pub fn scenario_schema() -> Value {
     let about = "A scenario file of Searoom (docs/reference/scenario.md). `searoom check` tells \
                  what a schema cannot";
     let any_velocity = velocities("Every velocity that the target may take, m/s");
+    let corners = list(1.., list(2..=2, number(COORDINATE)));
+    let meaning = "Corners of a convex set, [east, north] in metres, in any order";
+    let any_place = Schema::table("Every place of the hull's centre about a ship's position")
+        .require("vertices_m", corners, meaning);
     let definitions =
-        json!({ "position": position().finish(), "velocity_set": any_velocity.finish() });
+        json!({
+            "position": position().finish(),
+            "position_set": any_place.finish(),
+            "velocity_set": any_velocity.finish(),
+        });
     let table = Schema::table(about)
         .with("$schema", "http://json-schema.org/draft-07/schema#")
         .with("title", "Searoom scenario")
@@ -258,6 +267,11 @@ fn target() -> Schema {
         optional beam_m = number(LENGTH);
         /// Standard deviation of the position, per axis; the sets hold three of them
         optional position_std_m = or(0, number(DISTANCE));
+        /// Every place of the hull's centre, in metres east and north of the position
+        optional position_set = defined("position_set");
+        /// How far the hull may be turned from course_deg to either side; by default as far as the
+        /// course may be
+        optional heading_spread_deg = number(COURSE_SPREAD);
         /// Standard deviation of the measured speed
         speed speed_std = SPEED;
         /// Standard deviation of the measured course
@@ -286,6 +300,8 @@ fn target() -> Schema {
         optional first_course_deg = number(COURSE);
         /// Polygons, or the smallest ellipses around them
         optional representation = or("polytope", choice(Representation::WORDS));
+        /// Navigational status; no plan follows from it
+        optional status = choice(Status::WORDS);
         optional initial_set = initial;
         optional velocity_set = defined("velocity_set");
         /// Explicit velocities one after another; the last has no until_s

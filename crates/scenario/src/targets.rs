@@ -11,11 +11,13 @@ use searoom_geometry::frame::{
     Pose, Vector, course_deg_from_heading, deg_from_radians, heading_from_course_deg,
     mps_from_knots, radians_from_deg, wrap,
 };
-use searoom_geometry::tolerance;
+use searoom_geometry::tolerance::{self, SIGMAS};
 use searoom_geometry::{ConvexPolygon, ConvexSet};
 use searoom_input::text::{LINE, counted};
 use searoom_input::{Field, Table};
-use searoom_model::target::{DomainKind, KnownLeg, Motion, Representation, ShipTrack, Target};
+use searoom_model::target::{
+    DomainKind, KnownLeg, Motion, Representation, ShipTrack, Status, Target,
+};
 use searoom_model::vessel::OwnShip;
 
 /// Degrees by which the first leg of a route may differ from the course beside the spread.
@@ -64,6 +66,8 @@ pub(super) fn targets(
             );
         }
         let motion = motion(&mut table, plane);
+        let status = table.take("status");
+        let status = status.map_or(Some(None), |field| field.choice(Status::WORDS).map(Some));
         let ship = match &motion {
             Some((Motion::Ship(ship), _)) => Some(ship),
             _ => None,
@@ -79,12 +83,13 @@ pub(super) fn targets(
             _ => simulated(&mut table, plane),
         };
         table.finish();
-        let found = text.zip(motion).zip(role);
-        targets.push(found.map(|((name, motion), role)| {
+        let found = text.zip(motion).zip(role).zip(status);
+        targets.push(found.map(|(((name, motion), role), status)| {
             let target = Target {
                 name: name.to_owned(),
                 motion: motion.0,
                 representation: motion.1,
+                status,
             };
             let memory = TargetMemory {
                 role,
@@ -188,6 +193,12 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let speed = table.required_speed("speed", limits::SPEED);
     let hull = hull(table);
     let position_std = table.number("position_std_m", limits::DISTANCE);
+    let places = table.take("position_set").map(|field| {
+        let nothing = "nothing beside position_set: it holds every position";
+        table.forbid("position_std_m", nothing);
+        positions(&field)
+    });
+    let heading_spread = table.number("heading_spread_deg", limits::COURSE_SPREAD);
     let domain = table.read_or("domain", DomainKind::Colregs, domain);
     let given = table.has("velocity_set").then(|| velocities(table));
     let start = pose.map(|pose| pose.position);
@@ -199,8 +210,12 @@ fn ship(table: &mut Table, plane: &Plane) -> Option<ShipTrack> {
     let course_spread = table.number("course_spread_deg", limits::COURSE_SPREAD);
     let starboard_turn = table.number("starboard_turn_deg", limits::STARBOARD_TURN);
     let turn_rate = table.number("turn_rate_deg_per_s", limits::TURN_RATE);
+    let places = places.map_or(Some(None), |places| places.map(Some))?;
+    let reach = places.as_ref().map(|places| places.reach() / SIGMAS);
     let ship = ShipTrack {
-        position_std: position_std.unwrap_or(0.0),
+        position_std: reach.or(position_std).unwrap_or(0.0),
+        kept_positions: places,
+        heading_spread: heading_spread.map(radians_from_deg),
         speed_std: speed_std.unwrap_or(0.0),
         course_std: radians_from_deg(course_std.unwrap_or(0.0)),
         speed_spread: speed_spread.unwrap_or(0.0),
@@ -306,6 +321,20 @@ fn on_route(
         return speeds_field.reject(found, "a first speed within the spread of the present one");
     }
     Some(ship)
+}
+
+/// The positions of the hull's centre about the estimate, metres.
+fn positions(field: &Field) -> Option<ConvexPolygon> {
+    let ConvexSet::Polygon(places) = explicit_sets::position_set(field)? else {
+        return field.reject("an ellipse", "{ vertices_m } beside a ship");
+    };
+    if places.signed_distance(Vector::zeros()) > tolerance::TOUCH_M {
+        return field.reject(
+            "a set without [0, 0], which is the position",
+            "corners about the position, in metres east and north of it",
+        );
+    }
+    Some(places)
 }
 
 /// The velocities that a tracked ship may take, given as a polygon in place of its spreads.

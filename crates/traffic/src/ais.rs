@@ -548,24 +548,23 @@ impl Reading<'_> {
             }
             false => Interval::new((code - 0.5).max(0.0), code + 0.5),
         };
-        let hull = HullSet {
-            ahead: side(bow, 511.0, longest.max(511.0)),
-            astern: side(stern, 511.0, longest.max(511.0)),
-            port: side(port, 63.0, widest),
-            starboard: side(starboard, 63.0, widest),
-        };
+        let sum = |a: Interval, b: Interval| Interval::new(a.least + b.least, a.most + b.most);
+        let ahead = side(bow, 511.0, longest.max(511.0));
+        let astern = side(stern, 511.0, longest.max(511.0));
+        let to_port = side(port, 63.0, widest);
+        let to_starboard = side(starboard, 63.0, widest);
         if bow == 0.0 && port == 0.0 {
             notes.add(Note::NoAntenna);
-            let along = Interval::new(0.0, hull.astern.most);
-            let across = Interval::new(0.0, hull.starboard.most);
-            return HullSet {
-                ahead: along,
-                astern: along,
-                port: across,
-                starboard: across,
-            };
+            return HullSet::anywhere(astern, to_starboard);
         }
-        hull
+        HullSet {
+            length: sum(ahead, astern),
+            beam: sum(to_port, to_starboard),
+            ahead,
+            astern,
+            port: to_port,
+            starboard: to_starboard,
+        }
     }
 }
 

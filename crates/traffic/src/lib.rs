@@ -14,12 +14,14 @@ mod ais;
 mod assembly;
 mod bits;
 mod counts;
+mod picture;
 mod reader;
 mod report;
 mod sentence;
 
 pub use ais::Settings;
 pub use counts::{Counts, Dropped};
+pub use picture::{Listed, OwnPosition, Picture, PictureSettings, Ship, Taken, View};
 pub use reader::Reader;
 pub use report::{
     Directions, Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, PositionSet, Report,

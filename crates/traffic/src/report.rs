@@ -1,9 +1,11 @@
 //! What a report says, as sets.
 
 use std::f64::consts::PI;
+use std::fmt;
 
 use searoom_geometry::frame::{Geographic, Vector, direction, wrap};
 use searoom_geometry::{ConvexPolygon, outer_disc};
+pub use searoom_model::target::Status;
 
 /// All numbers from `least` to `most`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -117,6 +119,9 @@ impl VelocitySet {
 /// How far the hull reaches from the antenna, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HullSet {
+    /// Of the hull, which is less than what it may reach to both sides where the antenna is anywhere.
+    pub length: Interval,
+    pub beam: Interval,
     pub ahead: Interval,
     pub astern: Interval,
     pub port: Interval,
@@ -127,7 +132,15 @@ impl HullSet {
     /// Nothing is known but the largest reach to each side.
     pub(crate) fn unknown(length: f64, beam: f64) -> Self {
         let (along, across) = (Interval::new(0.0, length), Interval::new(0.0, beam));
+        Self::anywhere(along, across)
+    }
+
+    /// A hull whose antenna may be anywhere on it.
+    pub(crate) fn anywhere(length: Interval, beam: Interval) -> Self {
+        let [along, across] = [length, beam].map(|size| Interval::new(0.0, size.most));
         Self {
+            length,
+            beam,
             ahead: along,
             astern: along,
             port: across,
@@ -162,6 +175,14 @@ pub enum Identity {
     Mmsi(u32),
 }
 
+impl fmt::Display for Identity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Mmsi(number) => write!(f, "MMSI {number:09}"),
+        }
+    }
+}
+
 searoom_geometry::words! {
     /// What sent a report.
     pub enum Kind {
@@ -183,38 +204,6 @@ searoom_geometry::words! {
         Mark => "mark",
         /// A mark that is sent where nothing lies.
         VirtualMark => "virtual mark",
-    }
-}
-
-searoom_geometry::words! {
-    /// Navigational status.
-    pub enum Status {
-        /// Under way using her engine.
-        UnderWay => "under way",
-        /// At anchor.
-        Anchored => "anchored",
-        /// Not under command.
-        NotUnderCommand => "not under command",
-        /// Restricted in her ability to manoeuvre.
-        Restricted => "restricted",
-        /// Constrained by her draught.
-        ConstrainedByDraught => "constrained by draught",
-        /// Moored.
-        Moored => "moored",
-        /// Aground.
-        Aground => "aground",
-        /// Engaged in fishing.
-        Fishing => "fishing",
-        /// Under way under sail.
-        Sailing => "sailing",
-        /// Towing astern.
-        TowingAstern => "towing astern",
-        /// Pushing ahead or towing alongside.
-        Pushing => "pushing",
-        /// A distress transmitter that is active.
-        Distress => "distress",
-        /// A distress transmitter under test.
-        DistressTest => "distress test",
     }
 }
 
@@ -291,6 +280,12 @@ impl Notes {
 
     pub fn has(self, note: Note) -> bool {
         self.0 & (1 << note as u32) != 0
+    }
+
+    /// All notes of both.
+    #[must_use]
+    pub fn and(self, more: Self) -> Self {
+        Self(self.0 | more.0)
     }
 
     /// In the order of [`Note::WORDS`].

@@ -66,6 +66,7 @@ fn exchanged(scenario: &Scenario, target: &Target, ship: &ShipTrack) -> Option<S
             name: "own ship".to_owned(),
             motion: Motion::Ship(own_track),
             representation: target.representation,
+            status: None,
         }],
         memory: Memory::default(),
         // its mission is a line that may run across land

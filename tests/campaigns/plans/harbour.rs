@@ -122,6 +122,7 @@ pub fn scene(map: &Arc<Map>, waters: &Waters, seed: u64) -> Scenario {
                     )
                 }),
                 representation: Representation::Polytope,
+                status: None,
             }
         })
         .collect();

@@ -203,6 +203,7 @@ pub fn scene(seed: u64) -> Scenario {
                 name: format!("target {}", targets.len() + 1),
                 motion: Motion::Ship(ship),
                 representation,
+                status: None,
             });
         }
     }

@@ -134,6 +134,7 @@ fn add_far(scene: &mut Scenario, speed: f64) {
             Hull::new(60.0, 10.0),
         )),
         representation: scene.targets[0].representation,
+        status: None,
     });
 }
 

@@ -115,5 +115,6 @@ fn ship((index, field): (usize, &Field)) -> Option<Other> {
         hull: GivenHull::NotInFormat,
         track: Track::straight(start?, heading?, speed?),
         off: 0.0,
+        status: None,
     })
 }

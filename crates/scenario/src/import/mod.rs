@@ -10,7 +10,6 @@ mod dnv;
 mod imazu;
 mod scenario_text;
 mod situation;
-mod status;
 pub(super) mod xml;
 
 pub use assumed::{Assumed, Assumption};

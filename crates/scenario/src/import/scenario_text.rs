@@ -9,6 +9,7 @@ use searoom_geometry::frame::{
 };
 use searoom_geometry::{ConvexPolygon, outer_disc};
 use searoom_input::Fault;
+use searoom_model::target::Status;
 use searoom_model::target::route::{Spread, Track};
 use searoom_model::vessel::Hull;
 
@@ -121,9 +122,11 @@ impl Writing<'_> {
                     hull,
                     track,
                     off,
+                    status,
                 } => {
                     if let Some(theirs) = self.hull(name, hull) {
                         let clearance = clearance(margin) + off;
+                        self.name(name, *status);
                         self.ship(name, theirs, track, (clearance, *off), horizon);
                     }
                 }
@@ -206,7 +209,15 @@ impl Writing<'_> {
         Some(hull)
     }
 
-    /// A target; `clearance` is the distance, metres, from its centre to own ship's in all, `off` how
+    /// The beginning of a target.
+    fn name(&mut self, name: &str, status: Option<Status>) {
+        self.text += &format!("\n[[targets]]\nname = {}\n", quoted(name));
+        if let Some(status) = status {
+            self.text += &format!("status = \"{status}\"\n");
+        }
+    }
+
+    /// The motion of a target; `clearance` is the distance, metres, from its centre to own ship's in all, `off` how
     /// far it may be off its track.
     fn ship(
         &mut self,
@@ -227,7 +238,6 @@ impl Writing<'_> {
             time: 0.0,
             place: 0.0,
         };
-        self.text += &format!("\n[[targets]]\nname = {}\n", quoted(name));
         if let Some(steady) = track.steady(&spread) {
             let Hull { length, beam } = hull;
             let course_spread =

@@ -5,6 +5,7 @@ use searoom_geometry::frame::{Georeference, Pose, Side, Vector};
 use searoom_input::Remarks;
 use searoom_model::vessel::Hull;
 
+use searoom_model::target::Status;
 use searoom_model::target::route::Track;
 
 /// A checked situation in SI units and the east-north plane; [`Situation::scenario`] makes a
@@ -71,6 +72,7 @@ pub(super) enum Other {
         track: Track,
         /// Metres by which it may be off its track, everywhere on it.
         off: f64,
+        status: Option<Status>,
     },
     /// A convex part of an object at rest, metres.
     Fixed {

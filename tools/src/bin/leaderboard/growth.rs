@@ -105,6 +105,7 @@ fn among(targets: usize, seed: u64) -> Result<Scenario> {
             name: format!("target {k}"),
             motion: Motion::Ship(ship),
             representation: Representation::Polytope,
+            status: None,
         }
     };
     Ok(Scenario {

@@ -9,7 +9,7 @@ use roxmltree::Document;
 
 use super::assumed::Assumed;
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::status;
+use crate::status;
 use super::xml::{Names, Xml};
 use crate::limits;
 use geometry::{Body, State, body, shapes, state};
@@ -370,9 +370,8 @@ fn moving(element: &Xml, step: f64, remarks: &mut Remarks) -> Option<Recorded> {
         );
         remarks.note(&name, statement);
     }
-    if OF_RULE_18.contains(&kind) {
-        status::remark(&name, "type", kind, remarks);
-    }
     let states = [vec![initial], later].concat();
-    Recorded::new(element, name, body.hull, &states, step, remarks)
+    let status = OF_RULE_18.contains(&kind).then(|| status::of_word(kind));
+    let recorded = Recorded::new(element, name, body.hull, &states, step, remarks)?;
+    Some(recorded.with_status(status.flatten()))
 }

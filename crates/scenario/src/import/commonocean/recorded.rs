@@ -6,6 +6,7 @@ use super::geometry::State;
 use crate::limits;
 use searoom_geometry::frame::{Vector, direction, wrap};
 use searoom_input::Remarks;
+use searoom_model::target::Status;
 use searoom_model::target::route::{RouteLeg, RoutePoint, Track};
 
 /// A recorded ship. Steps beyond the speed of any ship, as a late report by AIS makes them, are taken
@@ -14,6 +15,7 @@ use searoom_model::target::route::{RouteLeg, RoutePoint, Track};
 pub(super) struct Recorded {
     name: String,
     hull: GivenHull,
+    status: Option<Status>,
     /// Radians and m/s at the first state.
     orientation: f64,
     velocity: Option<f64>,
@@ -32,6 +34,11 @@ struct Place {
 }
 
 impl Recorded {
+    /// With a navigational status.
+    pub(super) fn with_status(self, status: Option<Status>) -> Self {
+        Self { status, ..self }
+    }
+
     /// Checks the states. Where most of the steps are too fast their units are wrong, which is a
     /// fault.
     pub(super) fn new(
@@ -109,6 +116,7 @@ impl Recorded {
         Some(Self {
             name,
             hull,
+            status: None,
             orientation: initial.orientation,
             velocity: initial.velocity,
             places,
@@ -193,6 +201,7 @@ impl Recorded {
             hull: self.hull.clone(),
             track: track.appearing(appears.max(0.0)),
             off,
+            status: self.status,
         })
     }
 }

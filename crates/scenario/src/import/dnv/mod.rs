@@ -8,13 +8,14 @@ use std::collections::BTreeSet;
 
 use super::assumed::{Assumed, TURNING_LENGTHS, USUAL_HULL};
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use super::status;
+use crate::status;
 use crate::{limits, plane};
 use searoom_geometry::frame::{
     Geographic, Georeference, NAUTICAL_MILE_M, Pose, Side, Vector, heading_of, mps_from_knots,
     radians_from_deg, wrap,
 };
 use searoom_input::{Fault, Faults, Field, Range, Remarks};
+use searoom_model::target::Status;
 use searoom_model::target::route::{RouteLeg, RoutePoint, TightTurn, Track};
 use ship::{Initial, fixed, initial};
 
@@ -128,14 +129,18 @@ fn other_version(root: &Field) -> Option<Fault> {
     ))
 }
 
-fn nav_status(ship: &Field, name: &str, remarks: &mut Remarks) {
+/// The navigational status, a word or a code; one that is not known is a note.
+fn nav_status(ship: &Field, name: &str, remarks: &mut Remarks) -> Option<Status> {
     let initial = ship.get("initial").filter(Field::is_table);
-    let Some(status) = initial.and_then(|initial| initial.get("navStatus")) else {
-        return;
-    };
+    let status = initial.and_then(|initial| initial.get("navStatus"))?;
     let code = status.any_number().map(|code| code.to_string());
     let word = status.any_text().map(str::to_owned).or(code);
-    status::remark(name, "navStatus", &word.unwrap_or_default(), remarks);
+    let word = word.unwrap_or_default();
+    let known = status::of_word(&word);
+    if known.is_none() {
+        remarks.note(name, format_args!("navStatus \"{word}\" not used"));
+    }
+    known
 }
 
 fn unused(field: &Field, known: &[&str], remarks: &mut Remarks) {
@@ -205,7 +210,9 @@ fn own(
     let speed = assumed_speed.map(|speed| (speed, "taken, by --own-speed-mps"));
     let route = fields.and_then(|fields| route(&fields, &known, speed, earth, remarks));
     let (initial, fixed, route) = (initial?, fixed?, route?);
-    nav_status(field, "own ship", remarks);
+    if let Some(status) = nav_status(field, "own ship", remarks) {
+        status::remark("own ship", status, remarks);
+    }
     if fixed.delay > 0.0 {
         return field.reject(
             format_args!("own ship {} s late (static.initDelay)", fixed.delay),
@@ -236,7 +243,7 @@ fn others(list: &[Field], earth: &Georeference, remarks: &mut Remarks) -> Option
     let mut others = Vec::with_capacity(list.len());
     for (index, field) in list.iter().enumerate() {
         let ship = other(field, earth, remarks);
-        others.push(ship.map(|(name, hull, track)| {
+        others.push(ship.map(|(name, hull, track, status)| {
             let wanted = name.unwrap_or_else(|| format!("target {}", index + 1));
             let mut name = wanted.clone();
             let mut count = 2;
@@ -249,6 +256,7 @@ fn others(list: &[Field], earth: &Georeference, remarks: &mut Remarks) -> Option
                 hull,
                 track,
                 off: 0.0,
+                status,
             }
         }));
     }
@@ -259,7 +267,7 @@ fn other(
     field: &Field,
     earth: &Georeference,
     remarks: &mut Remarks,
-) -> Option<(Option<String>, GivenHull, Track)> {
+) -> Option<(Option<String>, GivenHull, Track, Option<Status>)> {
     unused(field, &SHIP_KEYS, remarks);
     let initial = initial(field, earth, remarks);
     let fixed = fixed(field, remarks);
@@ -284,8 +292,8 @@ fn other(
         track
     };
     let place = field.path();
-    nav_status(field, fixed.name.as_deref().unwrap_or(&place), remarks);
-    Some((fixed.name, fixed.hull, track))
+    let status = nav_status(field, fixed.name.as_deref().unwrap_or(&place), remarks);
+    Some((fixed.name, fixed.hull, track, status))
 }
 
 /// A track from one point, with constant course and speed.

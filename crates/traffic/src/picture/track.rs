@@ -1,0 +1,96 @@
+//! The last fix of a ship at one place, and since when it has been lying there.
+
+use searoom_geometry::frame::{Geographic, Vector, wrap};
+
+use crate::report::{Fix, Notes, PositionSet};
+
+/// Metres from the centre of the earth: the largest on WGS 84, so that no distance is too small.
+const RADIUS_M: f64 = 6_399_600.0;
+
+/// Half of a cell from which on a position is coarse, metres: that of a long-range report is 93 m.
+const COARSE_M: f64 = 50.0;
+
+/// Metres east and north from one place to another that is near.
+pub(super) fn metres(from: Geographic, to: Geographic) -> Vector {
+    let east = wrap((to.lon_deg - from.lon_deg).to_radians());
+    let lat = from.lat_deg.to_radians();
+    let north = to.lat_deg.to_radians() - lat;
+    Vector::new(east * lat.cos(), north) * RADIUS_M
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Track {
+    /// Which place of the identity it is, from 1 on.
+    pub number: u32,
+    pub fix: Fix,
+    pub position: PositionSet,
+    pub notes: Notes,
+    /// The first of the fixes at which the ship has been at rest since.
+    rest: Option<(f64, Geographic)>,
+}
+
+impl Track {
+    pub fn new(fix: Fix, position: PositionSet, notes: Notes) -> Self {
+        Self {
+            number: 1,
+            fix,
+            position,
+            notes,
+            rest: None,
+        }
+    }
+
+    pub fn is_coarse(&self) -> bool {
+        !(self.position.half_cell_m.norm() <= COARSE_M)
+    }
+
+    /// Distance from the middle of the position to its farthest corner, metres.
+    pub fn reach(&self) -> f64 {
+        self.position.half_cell_m.norm() + self.position.radius_m
+    }
+
+    /// Metres by which a ship of a greatest speed cannot have come from the other fix to this one, or back.
+    pub fn apart(&self, other: &Self, fastest: f64) -> f64 {
+        let [a, b] = [&self.fix, &other.fix];
+        let time = (a.time.most - b.time.least).max(b.time.most - a.time.least);
+        let said = |fix: &Fix| match fix.velocity.speed.most.is_finite() {
+            true => fix.velocity.speed.most,
+            false => 0.0,
+        };
+        let speed = fastest.max(said(a)).max(said(b));
+        let between = metres(self.position.at, other.position.at).norm();
+        between - self.reach() - other.reach() - speed * time
+    }
+
+    /// Goes on with a newer fix.
+    pub fn follow(&mut self, new: Self, rest_mps: f64) {
+        let may_rest = new.may_rest(rest_mps);
+        let begun = self.rest.unwrap_or((self.fix.time.least, self.position.at));
+        let moved = metres(begun.1, new.position.at).norm();
+        let rest = (may_rest && self.may_rest(rest_mps) && moved <= self.reach() + new.reach())
+            .then_some(begun);
+        let number = self.number;
+        *self = Self {
+            number,
+            rest,
+            ..new
+        };
+    }
+
+    /// True where a speed that was sent does not contradict a ship at rest. A speed that is not known
+    /// contradicts nothing.
+    fn may_rest(&self, rest_mps: f64) -> bool {
+        let speed = self.fix.velocity.speed;
+        match speed.most.is_finite() {
+            true => speed.most <= rest_mps,
+            false => speed.least == 0.0,
+        }
+    }
+
+    /// True where the ship has been at one place for a time in seconds. Two fixes apart in time show that,
+    /// because some units send a speed of 0 where they know none.
+    pub fn is_lying(&self, rest_mps: f64, lying_s: f64) -> bool {
+        let since = self.rest.map(|(since, _)| self.fix.time.most - since);
+        since.is_some_and(|lasts| lasts >= lying_s && 2.0 * self.reach() <= rest_mps * lasts)
+    }
+}
