@@ -70,6 +70,7 @@
 //! | [`input`] | reading of files: bounded text, values with their positions, all faults at once |
 //! | [`scenario`] | scenario files; [`scenario::import`]: files of other programs |
 //! | [`pipeline`] | scenario → sets → plan → evaluation |
+//! | [`traffic`] | AIS and other feeds; the ships around own ship as targets |
 //! | [`replanning`] | what a plan leaves to the next one |
 //! | [`simulation`] | scenarios sailed in the closed loop |
 //! | `campaign` | many random encounters sailed, in parts that are merged and counted (feature `campaign`, on by default) |
@@ -160,6 +161,7 @@ pub mod replanning;
 pub mod report;
 pub mod simulation;
 pub mod study;
+pub mod traffic;
 
 // the libraries, by the names of their topics
 pub use searoom_colregs as colregs;

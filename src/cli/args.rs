@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
+use chrono::{DateTime, Utc};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Args, Parser, Subcommand, ValueHint};
 use searoom::colregs::Thresholds;
 use searoom::document::{PlanDocument, breaks};
+use searoom::input::{DATE_TIME, date_time};
 use searoom::pipeline::Run;
 use searoom::planner::{Planner, SearchKind, planner_words};
 use searoom::report::figure::{FigureFormat, FigureOptions};
@@ -22,6 +24,9 @@ use super::input::rows;
 use super::output::products::{STDOUT, Wanted};
 use super::shell::schema_kinds;
 use super::status::ExitStatus;
+
+/// Heading of the options of traffic.
+const TRAFFIC: &str = "Traffic";
 
 /// The text below the options of a command.
 macro_rules! example {
@@ -235,9 +240,23 @@ pub struct SimulateArgs {
 
 #[derive(Debug, Args)]
 pub struct ImportArgs {
-    /// Files of other formats, or folders of them
+    /// Files of other formats, or folders of them; with --at files of traffic, - is standard input
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
+    /// Make one scenario of the traffic at a date and time, such as 2026-05-01T12:00:00Z
+    #[arg(long, value_name = "TIME", value_parser = date, requires = "route", help_heading = TRAFFIC)]
+    pub at: Option<DateTime<Utc>>,
+    /// Own ship's MMSI, where the traffic has own ship as one among others
+    #[arg(long, value_name = "MMSI", requires = "at", help_heading = TRAFFIC)]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=999_999_999))]
+    pub own: Option<u32>,
+    /// Own ship's position, course and speed in knots, where the traffic does not have it
+    #[arg(long, value_name = "LAT,LON,COURSE,KN", requires = "at", help_heading = TRAFFIC)]
+    #[arg(value_parser = own_pose, allow_hyphen_values = true, conflicts_with = "own")]
+    pub own_pose: Option<[f64; 4]>,
+    /// Own ship's route
+    #[arg(long, value_name = "FILE.rtz", requires = "at", help_heading = TRAFFIC)]
+    pub route: Option<PathBuf>,
     /// Folder for the scenario files; created if it does not exist
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     pub out: PathBuf,
@@ -484,6 +503,37 @@ impl AssumedArgs {
             .filter_map(|(what, value)| Some((what, value?)));
         let assumed = Assumed::default().with_variants(self.variants);
         given.fold(assumed, |assumed, (what, value)| assumed.with(what, value))
+    }
+}
+
+/// A date and a time with its offset from UTC.
+fn date(word: &str) -> Result<DateTime<Utc>, String> {
+    date_time(word).ok_or_else(|| format!("allowed: {DATE_TIME}"))
+}
+
+/// Latitude, longitude, course and knots.
+fn own_pose(word: &str) -> Result<[f64; 4], String> {
+    const ALLOWED: &str = "allowed: four numbers with commas between, latitude -89 to 89, longitude \
+                           -180 to 180, course -360 to 360, and 0 to 194 knots";
+    let numbers: Vec<f64> = (word.split(','))
+        .map(|part| part.trim().parse().map_err(|_| ALLOWED.to_owned()))
+        .collect::<Result<_, String>>()?;
+    let limits = [
+        (-89.0, 89.0),
+        (-180.0, 180.0),
+        (-360.0, 360.0),
+        (0.0, 194.0),
+    ];
+    match <[f64; 4]>::try_from(numbers) {
+        Ok(numbers)
+            if numbers
+                .iter()
+                .zip(limits)
+                .all(|(n, (low, high))| (low..=high).contains(n)) =>
+        {
+            Ok(numbers)
+        }
+        _ => Err(ALLOWED.to_owned()),
     }
 }
 

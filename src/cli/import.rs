@@ -1,5 +1,7 @@
 //! `searoom import` and `searoom init`: scenario files from other formats, and one to begin with.
 
+mod traffic;
+
 use searoom::report::write_atomically;
 
 use super::args::{ImportArgs, InitArgs};
@@ -26,6 +28,9 @@ pub fn init(args: &InitArgs, output: &Output) -> ExitStatus {
 
 /// Writes one scenario file per situation. Scenario files are not changed.
 pub fn import(args: &ImportArgs, output: &Output) -> anyhow::Result<ExitStatus> {
+    if let (Some(at), Some(route)) = (args.at, &args.route) {
+        return traffic::import(args, at, route, output);
+    }
     let scenes = scenes::open(&args.files, &args.assumed, output);
     refuse_clashes(&scenes::found(&scenes))?;
     make_folder(&args.out)?;

@@ -11,7 +11,9 @@ use super::route::{Route, RouteLeg};
 use super::simulation::simulation;
 use super::speed_limits::SpeedLimit;
 use super::targets::targets;
-use super::{Compliance, Land, Memory, Scenario, SimulationSettings, after, land, limits, status};
+use super::{
+    Compliance, Land, Memory, OwnNow, Scenario, SimulationSettings, after, land, limits, status,
+};
 use searoom_colregs::TargetMemory;
 use searoom_geometry::frame::{
     GEOREFERENCE_REACH_M, Geographic, Georeference, Pose, Vector, heading_from_course_deg,
@@ -51,10 +53,15 @@ pub(super) const DEFAULT_ARRIVAL_HOLD: f64 = 60.0;
 pub(super) const DEFAULT_DEADLINE: f64 = 5.0;
 
 /// Reads the text of a scenario file in `folder`. A scenario that comes with faults is of no use.
-pub(super) fn parse(text: &str, folder: &Path, faults: &Faults) -> Option<Scenario> {
+pub(super) fn parse(
+    text: &str,
+    folder: &Path,
+    now: Option<&OwnNow>,
+    faults: &Faults,
+) -> Option<Scenario> {
     let root: Node = from_toml(text, faults)?;
     let table = Field::root(&root, faults).table("a table")?;
-    let scenario = scenario(table, folder)?;
+    let scenario = scenario(table, folder, now)?;
     for fault in scenario.unfit() {
         faults.note(at(&root, fault));
     }
@@ -77,7 +84,7 @@ fn at(root: &Node, fault: Fault) -> Fault {
 }
 
 /// The scenario of a file's outermost table. `None` only if a fault was noted.
-fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
+fn scenario(mut root: Table, folder: &Path, now: Option<&OwnNow>) -> Option<Scenario> {
     let title = root
         .require("title", LINE)
         .and_then(|field| field.line_of_text());
@@ -91,9 +98,15 @@ fn scenario(mut root: Table, folder: &Path) -> Option<Scenario> {
     let mut remarks = Remarks::default();
     cautions(&mut root, &mut remarks);
     let map = land::map(&mut root, &plane, folder, &mut remarks);
-    let own_ship = root
+    let mut own_ship = root
         .required_table("own_ship")
         .map(|table| own_ship(table, |table| pose(table, &plane)));
+    if let (Some(own), Some(now)) = (&mut own_ship, now) {
+        if let (Some(ship), Some(earth)) = (&mut own.ship, plane.need_earth()) {
+            ship.pose = Pose::new(earth.to_plane(now.place), now.heading);
+            ship.speed = now.speed;
+        }
+    }
     let speed = own_ship.as_ref().and_then(|own| own.speed);
     let margin = own_ship.as_ref().map(|own| own.land_margin);
     let acceleration = own_ship.as_ref().and_then(|own| own.acceleration);
@@ -432,7 +445,7 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
         alternatives(field, plane)
     });
     let from = table.take("from_waypoint");
-    let from_read = from.as_ref().map(|field| field.whole_number(FROM_WAYPOINT));
+    let from_read = from.as_ref().map(first_waypoint);
     let schedule = table.take("schedule");
     let of_route = from.iter().chain(&schedule).next().cloned();
     let schedule = schedule.map(|field| field.line_of_text());
@@ -614,12 +627,34 @@ fn slow_down(field: &Field, speeds: &mut [f64], part: &Part, remarks: &mut Remar
     Some(())
 }
 
+/// Where the mission on a route begins.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum First {
+    /// At a waypoint, counted from 1.
+    Waypoint(usize),
+    /// At the place nearest to own ship.
+    Nearest,
+}
+
+/// The word for [`First::Nearest`].
+pub(super) const NEAREST: &str = "nearest";
+
+fn first_waypoint(field: &Field) -> Option<First> {
+    match field.any_text() {
+        Some(NEAREST) => Some(First::Nearest),
+        Some(_) => field.refuse(format_args!(
+            "the number of a waypoint from 1 on, or \"{NEAREST}\" to own ship"
+        )),
+        None => field.whole_number(FROM_WAYPOINT).map(First::Waypoint),
+    }
+}
+
 /// The part of a route file, with its schedule and its first waypoint by choice, that is the mission.
 /// A route beyond the reach of the plane is followed from the place nearest to own ship, or from the
 /// chosen waypoint, to the end of the reach.
 fn route(
     field: &Field,
-    (schedule, from): (Option<&str>, Option<usize>),
+    (schedule, from): (Option<&str>, Option<First>),
     reading: &Reading,
     remarks: &mut Remarks,
 ) -> Option<Part> {
@@ -629,7 +664,9 @@ fn route(
     let route = field.contents(&file, Route::read(&file, schedule), kind)?;
     let earth = earth?;
     let count = route.places.len();
-    if let Some(from) = from.filter(|from| *from >= count) {
+    if let Some(First::Waypoint(from)) = from
+        && from >= count
+    {
         let found = format_args!("from_waypoint = {from} for a route of {count} waypoints");
         return field.reject(found, format_args!("1 to {}", count - 1));
     }
@@ -637,9 +674,9 @@ fn route(
     let is_near = |place: &Geographic| earth.to_near_plane(*place).is_some();
     let is_whole = count <= limits::WAYPOINTS && route.places.iter().all(is_near);
     let (first, begins) = match from {
-        Some(from) => (from - 1, 0.0),
+        Some(First::Waypoint(from)) => (from - 1, 0.0),
         None if is_whole => (0, 0.0),
-        None => {
+        None | Some(First::Nearest) => {
             let own = reading
                 .own_pose
                 .map_or_else(Vector::zeros, |own| own.position);
@@ -735,7 +772,7 @@ fn route(
         legs,
         waits,
         departs,
-        is_beyond_reach: is_cut || !is_whole,
+        is_beyond_reach: is_cut || !is_whole || from == Some(First::Nearest),
     })
 }
 

@@ -46,7 +46,7 @@ use chrono::{DateTime, TimeDelta, Utc};
 use planner::PlannerTable;
 
 use searoom_colregs::Thresholds;
-use searoom_geometry::frame::{Georeference, Vector};
+use searoom_geometry::frame::{Geographic, Georeference, Vector};
 use searoom_input::{Faults, read_text};
 use searoom_model::target::Target;
 use searoom_model::trajectory::{DesiredTrajectory, Trajectory};
@@ -210,12 +210,33 @@ impl Scenario {
 
     /// [`Scenario::parse`] for a file in `folder`, from where its map is searched.
     pub fn parse_beside(text: &str, folder: &Path) -> Result<Self, Vec<Fault>> {
+        Self::checked(text, folder, None)
+    }
+
+    /// [`Scenario::parse_beside`] with own ship where it is now, in place of the file's position, course
+    /// and speed. A mission on a route from `"nearest"` begins there. Needs an `origin`.
+    pub fn parse_at(text: &str, folder: &Path, now: &OwnNow) -> Result<Self, Vec<Fault>> {
+        Self::checked(text, folder, Some(now))
+    }
+
+    fn checked(text: &str, folder: &Path, now: Option<&OwnNow>) -> Result<Self, Vec<Fault>> {
         let faults = Faults::default();
-        match check::parse(text, folder, &faults) {
+        match check::parse(text, folder, now, &faults) {
             Some(scenario) if faults.is_empty() => Ok(scenario),
             _ => Err(faults.take()),
         }
     }
+}
+
+/// Own ship at sea, where a file has it somewhere else.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OwnNow {
+    /// The middle of its hull.
+    pub place: Geographic,
+    /// Radians on the plane of the file.
+    pub heading: f64,
+    /// m/s.
+    pub speed: f64,
 }
 
 /// The date and time so many seconds later, to a millisecond; `None` beyond the calendar.

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::check::{CAUTIONS, DEFAULT_ARRIVAL_HOLD, DEFAULT_DEADLINE, FROM_WAYPOINT};
+use super::check::{CAUTIONS, DEFAULT_ARRIVAL_HOLD, DEFAULT_DEADLINE, FROM_WAYPOINT, NEAREST};
 use super::land::POINT_RADIUS;
 use super::limits::*;
 use super::simulation::*;
@@ -34,12 +34,11 @@ pub fn scenario_schema() -> Value {
     let meaning = "Corners of a convex set, [east, north] in metres, in any order";
     let any_place = Schema::table("Every place of the hull's centre about a ship's position")
         .require("vertices_m", corners, meaning);
-    let definitions =
-        json!({
-            "position": position().finish(),
-            "position_set": any_place.finish(),
-            "velocity_set": any_velocity.finish(),
-        });
+    let definitions = json!({
+        "position": position().finish(),
+        "position_set": any_place.finish(),
+        "velocity_set": any_velocity.finish(),
+    });
     let table = Schema::table(about)
         .with("$schema", "http://json-schema.org/draft-07/schema#")
         .with("title", "Searoom scenario")
@@ -159,7 +158,9 @@ fn mission() -> Schema {
         /// Name or id of the schedule of the route; the first one by default
         optional schedule = line_of_text();
         /// Waypoint of the route at which the mission begins, counted from 1
-        optional from_waypoint = whole_number(FROM_WAYPOINT);
+        optional from_waypoint = json!({
+            "anyOf": [whole_number(FROM_WAYPOINT), words([NEAREST])]
+        });
         /// Speed on every leg; own ship's by default
         speed speed = WAY;
         /// One speed per leg, in place of one speed

@@ -21,7 +21,9 @@ mod sentence;
 
 pub use ais::Settings;
 pub use counts::{Counts, Dropped};
-pub use picture::{Listed, OwnPosition, Picture, PictureSettings, Ship, Taken, View};
+pub use picture::{
+    Listed, OwnPosition, Picture, PictureSettings, Reach, STALE, Ship, Taken, View, WITHOUT_PLACE,
+};
 pub use reader::Reader;
 pub use report::{
     Directions, Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, PositionSet, Report,

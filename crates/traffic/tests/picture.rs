@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use searoom_geometry::frame::{Geographic, Georeference, Pose, Vector, direction, wrap};
 use searoom_traffic::{
     Directions, Fix, HullSet, Identity, Interval, Kind, Note, Notes, Picture, PictureSettings,
-    PositionSet, Report, Ship, Taken, VelocitySet,
+    PositionSet, Reach, Report, Ship, Taken, VelocitySet,
 };
 
 const HERE: Geographic = Geographic {
@@ -67,7 +67,7 @@ fn resting() -> VelocitySet {
 }
 
 fn only(picture: &Picture, time: f64) -> Ship {
-    let view = picture.at(time, &plane(), f64::INFINITY);
+    let view = picture.at(time, &plane(), Reach::ALL);
     assert_eq!(view.ships.len(), 1, "{:?}", view.listed);
     view.ships.into_iter().next().expect("one")
 }
@@ -183,7 +183,7 @@ fn two_ships_with_one_number_are_two_tracks() {
         picture.take(&report(7, 15.0, there_later, steaming(5.0, 0.0)), 15.0),
         Taken::Fix
     );
-    let view = picture.at(16.0, &plane(), f64::INFINITY);
+    let view = picture.at(16.0, &plane(), Reach::ALL);
     let east = |ship: &Ship| ship.track().expect("a ship").pose.position.x;
     let places: Vec<f64> = view.ships.iter().map(east).collect();
     assert!(
@@ -196,6 +196,31 @@ fn two_ships_with_one_number_are_two_tracks() {
         .map(|ship| ship.target.name.as_str())
         .collect();
     assert_ne!(names[0], names[1]);
+}
+
+/// North on the plane is not north 100 km east of its origin.
+#[test]
+fn courses_are_turned_to_the_plane() {
+    let origin = Geographic {
+        lat_deg: 70.0,
+        lon_deg: 10.0,
+    };
+    let plane = Georeference::new(origin).expect("on the earth");
+    let at = plane.to_geographic(Vector::new(100e3, 0.0));
+    let ahead = Geographic {
+        lat_deg: at.lat_deg + 1e-3,
+        ..at
+    };
+    let north = plane.to_plane(ahead) - plane.to_plane(at);
+    let mut picture = Picture::new(PictureSettings::default());
+    picture.take(
+        &report(7, 0.0, at, steaming(5.0, std::f64::consts::FRAC_PI_2)),
+        0.0,
+    );
+    let view = picture.at(0.0, &plane, Reach::ALL);
+    let course = view.ships[0].track().expect("a ship").pose.heading;
+    assert!((course - north.y.atan2(north.x)).abs() < 1e-4);
+    assert!((course - std::f64::consts::FRAC_PI_2).abs() > 0.04);
 }
 
 /// 60 m east of here the longitude is beyond 180°.
@@ -287,11 +312,11 @@ fn own_ship_is_never_a_target() {
     assert_eq!(picture.take(&own, 0.0), Taken::SecondOwn);
     assert_eq!(picture.take(&own, 0.0), Taken::SecondOwn);
     assert_eq!(picture.own_identities().len(), 2);
-    let view = picture.at(1.0, &plane(), f64::INFINITY);
+    let view = picture.at(1.0, &plane(), Reach::ALL);
     assert!(view.ships.is_empty());
     let known = view.own.expect("own ship");
     assert!((known.pose.position - direction(0.5) * 5.0).norm() < 0.1 && known.radius_m > 10.0);
-    assert!(picture.at(11.0, &plane(), f64::INFINITY).own.is_none());
+    assert!(picture.at(11.0, &plane(), Reach::ALL).own.is_none());
 
     // without its own sentences, by the number that is asked for
     let given = PictureSettings {
@@ -303,7 +328,7 @@ fn own_ship_is_never_a_target() {
         picture.take(&report(1, 0.0, HERE, steaming(5.0, 0.5)), 0.0),
         Taken::Own
     );
-    assert!(picture.at(1.0, &plane(), f64::INFINITY).own.is_some());
+    assert!(picture.at(1.0, &plane(), Reach::ALL).own.is_some());
 }
 
 /// What own ship does not know of its own place is beside every other ship's.
@@ -339,7 +364,7 @@ fn silent_ships_are_listed_then_forgotten_with_a_count() {
     let settings = PictureSettings::default();
     let mut picture = Picture::new(settings.clone());
     picture.take(&report(7, 0.0, HERE, steaming(5.0, 0.0)), 0.0);
-    let view = |picture: &Picture, time: f64| picture.at(time, &plane(), f64::INFINITY);
+    let view = |picture: &Picture, time: f64| picture.at(time, &plane(), Reach::ALL);
     assert_eq!(view(&picture, settings.stale_s).ships.len(), 1);
     let stale = view(&picture, settings.stale_s + 1.0);
     assert!(stale.ships.is_empty() && stale.listed.len() == 1 && stale.listed[0].silent_s == 361.0);
@@ -373,7 +398,7 @@ fn memory_is_bounded_and_old_distant_ships_leave_first() {
         picture.take(&report(1000 + number, 0.0, at, steaming(5.0, 0.0)), 0.0);
     }
     assert!(picture.ships() <= 100 && picture.forgotten()[1] >= 50);
-    let view = picture.at(1.0, &plane(), f64::INFINITY);
+    let view = picture.at(1.0, &plane(), Reach::ALL);
     let farthest = view
         .ships
         .iter()

@@ -302,7 +302,12 @@ fn target(path: &str, target: &TargetDocument) -> Result<Target, ClaimError> {
             let course_spread = at("course_spread_deg");
             within(&course_spread, ship.course_spread_deg, 0.0, 180.0)?;
             let heading_spread = at("heading_spread_deg");
-            within(&heading_spread, ship.heading_spread_deg.unwrap_or(0.0), 0.0, 180.0)?;
+            within(
+                &heading_spread,
+                ship.heading_spread_deg.unwrap_or(0.0),
+                0.0,
+                180.0,
+            )?;
             let turn = at("starboard_turn_deg");
             within(&turn, ship.starboard_turn_deg, -180.0, 180.0)?;
             let track = placed(&format!("{path}.ship"), ship.track())?;

@@ -25,7 +25,7 @@ pub fn name(file: &Path) -> PathBuf {
     }
 }
 
-fn is_stdin(file: &Path) -> bool {
+pub fn is_stdin(file: &Path) -> bool {
     file == Path::new(STDIN)
 }
 
@@ -126,7 +126,8 @@ fn meant(paths: &[PathBuf], kind: &FileKind) -> Vec<Result<Found, Refused>> {
     all
 }
 
-fn stem(relative: &Path) -> String {
+/// Name of the outputs of a file.
+pub fn stem(relative: &Path) -> String {
     let parts: Vec<_> = relative
         .with_extension("")
         .components()

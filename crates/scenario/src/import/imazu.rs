@@ -1,6 +1,6 @@
 //! Imazu's encounters as one JSON file: `own_ship` for all of them, `cases` and `variants` of them.
 
-use super::situation::{Declared, GivenHull, Other, Own, Situation};
+use super::situation::{Declared, GivenHull, Other, Own, OwnRoute, Situation};
 use crate::limits;
 use searoom_geometry::frame::{Pose, Side, Vector, heading_from_course_deg, wrap};
 use searoom_input::{Fault, Faults, Field, Remarks, every};
@@ -55,8 +55,10 @@ fn own(field: &Field) -> Option<Own> {
         pose: Pose::new(start, heading?),
         speed,
         hull: GivenHull::NotInFormat,
-        route: vec![start, goal],
-        leg_speeds: vec![speed],
+        route: OwnRoute::Points {
+            points: vec![start, goal],
+            leg_speeds: vec![speed],
+        },
         horizon: None,
     })
 }
@@ -77,6 +79,7 @@ fn case(field: &Field, own: &Own) -> Result<Situation, Vec<Fault>> {
     Ok(Situation {
         name: id.to_owned(),
         id: Some(id.to_owned()),
+        start_utc: None,
         own: own.clone(),
         others,
         earth: None,

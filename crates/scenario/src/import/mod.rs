@@ -10,11 +10,13 @@ mod dnv;
 mod imazu;
 mod scenario_text;
 mod situation;
+mod traffic;
 pub(super) mod xml;
 
 pub use assumed::{Assumed, Assumption};
 pub use scenario_text::Imported;
 pub use situation::{Declared, Situation};
+pub use traffic::OwnInTraffic;
 
 use std::path::Path;
 

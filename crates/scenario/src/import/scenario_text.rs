@@ -1,16 +1,18 @@
 //! A situation as the text of a scenario file: the only way from an imported file to a scenario, so
 //! that importing a file and running it directly are the same.
 
+use std::path::Path;
+
 use super::assumed::{ASSUMED_SPEEDS, Assumed, HORIZON_ROUTES, TURNING_LENGTHS};
-use super::situation::{GivenHull, Other, Own, Situation};
+use super::situation::{GivenHull, Other, Own, OwnRoute, Situation};
 use crate::{Scenario, limits};
 use searoom_geometry::frame::{
     Geographic, Pose, Vector, course_deg_from_heading, deg_from_radians, heading_of,
 };
 use searoom_geometry::{ConvexPolygon, outer_disc};
 use searoom_input::Fault;
-use searoom_model::target::Status;
 use searoom_model::target::route::{Spread, Track};
+use searoom_model::target::{DomainKind, Motion, Status, Target};
 use searoom_model::vessel::Hull;
 
 /// A scenario made from an imported situation.
@@ -28,6 +30,15 @@ impl Situation {
     /// The scenario with its assumptions. Faults name the field of the imported file, or of the
     /// scenario file if only the whole is wrong.
     pub fn scenario(&self, assumed: &Assumed) -> Result<Imported, Vec<Fault>> {
+        self.scenario_beside(assumed, Path::new(""))
+    }
+
+    /// [`Self::scenario`] in a folder, where its route file lies.
+    pub fn scenario_beside(
+        &self,
+        assumed: &Assumed,
+        folder: &Path,
+    ) -> Result<Imported, Vec<Fault>> {
         let mut writing = Writing {
             assumed,
             text: String::new(),
@@ -50,7 +61,7 @@ impl Situation {
         }
         let heading: String = notes.iter().map(|note| format!("# {note}\n")).collect();
         let text = heading + &writing.text;
-        let scenario = Scenario::parse(&text)?;
+        let scenario = Scenario::parse_beside(&text, folder)?;
         let notes = [scenario.remarks.all(), notes].concat();
         Ok(Imported {
             scenario,
@@ -77,7 +88,10 @@ impl Writing<'_> {
         let own = &situation.own;
         let horizon = own.horizon.unwrap_or(HORIZON_ROUTES * own.duration());
         let name = quoted(&situation.name);
-        let head = format!("title = {name}\nhorizon_s = {horizon:?}\n");
+        let start = situation.start_utc.as_ref();
+        let start = start.map(|start| format!("start_utc = {start}\n"));
+        let head =
+            format!("title = {name}\nhorizon_s = {horizon:?}\n") + &start.unwrap_or_default();
         self.tables(situation, horizon);
         let mut remarks = situation.remarks.clone();
         if let [first, more @ ..] = &self.without_role[..] {
@@ -130,6 +144,7 @@ impl Writing<'_> {
                         self.ship(name, theirs, track, (clearance, *off), horizon);
                     }
                 }
+                Other::Tracked(target) => self.tracked(target),
                 Other::Fixed {
                     name,
                     shape,
@@ -159,10 +174,10 @@ impl Writing<'_> {
         );
         // at rest the speeds of the legs are own speeds
         let moving = [own.speed];
-        let given = if own.speed == 0.0 {
-            &own.leg_speeds[..]
-        } else {
-            &moving
+        let given = match &own.route {
+            OwnRoute::Points { leg_speeds, .. } if own.speed == 0.0 => &leg_speeds[..],
+            OwnRoute::File(_) if own.speed == 0.0 => &self.assumed.own_speed.map_or([1.0], |v| [v]),
+            _ => &moving,
         };
         let fractions = given
             .iter()
@@ -171,12 +186,17 @@ impl Writing<'_> {
         speeds.sort_by(f64::total_cmp);
         speeds.dedup();
         self.text += &format!("speeds_mps = {speeds:?}\n");
-        let route = own.route.iter();
-        let route: String = route.map(|p| format!("    {},\n", position(*p))).collect();
-        self.text += &format!(
-            "\n[mission]\nwaypoints = [\n{route}]\nleg_speeds_mps = {:?}\n",
-            own.leg_speeds
-        );
+        self.text += &match &own.route {
+            OwnRoute::File(file) => format!(
+                "\n[mission]\nroute = {}\nfrom_waypoint = \"nearest\"\n",
+                quoted(file)
+            ),
+            OwnRoute::Points { points, leg_speeds } => {
+                let places = points.iter();
+                let places: String = places.map(|p| format!("    {},\n", position(*p))).collect();
+                format!("\n[mission]\nwaypoints = [\n{places}]\nleg_speeds_mps = {leg_speeds:?}\n")
+            }
+        };
     }
 
     /// The given or assumed hull; a fault if there is none.
@@ -207,6 +227,42 @@ impl Writing<'_> {
         self.sizeless.push(whose.to_owned());
         self.taken = Some(hull);
         Some(hull)
+    }
+
+    /// A ship with its sets, as they are.
+    fn tracked(&mut self, target: &Target) {
+        let Motion::Ship(ship) = &target.motion else {
+            return;
+        };
+        self.name(&target.name, target.status);
+        let Hull { length, beam } = ship.hull;
+        self.text += &format!(
+            "{}length_m = {length:?}\nbeam_m = {beam:?}\n",
+            under_way(&ship.pose, ship.speed)
+        );
+        match &ship.kept_positions {
+            Some(places) => {
+                self.text += &format!("position_set = {{ vertices_m = {} }}\n", vertices(places));
+            }
+            None => self.text += &format!("position_std_m = {:?}\n", ship.position_std),
+        }
+        let degrees = |key: &str, angle: f64| match angle == 0.0 {
+            true => String::new(),
+            false => format!(
+                "{key} = {:?}\n",
+                deg_from_radians(angle).clamp(-180.0, 180.0)
+            ),
+        };
+        self.text += &format!("speed_spread_mps = {:?}\n", ship.speed_spread);
+        self.text += &degrees("course_spread_deg", ship.course_spread);
+        self.text += &degrees("starboard_turn_deg", ship.starboard_turn);
+        if let Some(spread) = ship.heading_spread {
+            let spread = deg_from_radians(spread).min(limits::COURSE_SPREAD.high);
+            self.text += &format!("heading_spread_deg = {spread:?}\n");
+        }
+        if ship.domain == DomainKind::Hull {
+            self.text += "domain = \"hull\"\n";
+        }
     }
 
     /// The beginning of a target.

@@ -5,8 +5,11 @@ use searoom_geometry::frame::{Georeference, Pose, Side, Vector};
 use searoom_input::Remarks;
 use searoom_model::vessel::Hull;
 
-use searoom_model::target::Status;
 use searoom_model::target::route::Track;
+use searoom_model::target::{Motion, Status, Target};
+
+/// Seconds of a mission on a route file: the scenario takes as much of it as half the horizon holds.
+const ROUTE_S: f64 = 900.0;
 
 /// A checked situation in SI units and the east-north plane; [`Situation::scenario`] makes a
 /// scenario of it.
@@ -16,6 +19,8 @@ pub struct Situation {
     pub name: String,
     /// Name of its outputs, if a file has several situations.
     pub id: Option<String>,
+    /// Date and time of the present, RFC 3339.
+    pub(super) start_utc: Option<String>,
     pub(super) own: Own,
     pub(super) others: Vec<Other>,
     pub(super) earth: Option<Georeference>,
@@ -40,12 +45,22 @@ pub(super) struct Own {
     /// m/s.
     pub(super) speed: f64,
     pub(super) hull: GivenHull,
-    /// At least two points, metres.
-    pub(super) route: Vec<Vector>,
-    /// m/s, one per leg, positive.
-    pub(super) leg_speeds: Vec<f64>,
+    pub(super) route: OwnRoute,
     /// Seconds by which own ship must arrive, if the format has it.
     pub(super) horizon: Option<f64>,
+}
+
+/// Where own ship is bound.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum OwnRoute {
+    Points {
+        /// At least two, metres.
+        points: Vec<Vector>,
+        /// m/s, one per leg, positive.
+        leg_speeds: Vec<f64>,
+    },
+    /// A route file, as a scenario beside it names it.
+    File(String),
 }
 
 /// The hull of a ship as a file has it.
@@ -74,6 +89,8 @@ pub(super) enum Other {
         off: f64,
         status: Option<Status>,
     },
+    /// A ship with its sets.
+    Tracked(Box<Target>),
     /// A convex part of an object at rest, metres.
     Fixed {
         name: String,
@@ -90,15 +107,33 @@ impl Other {
         match &mut moved {
             Self::Ship { track, .. } => track.translate(shift),
             Self::Fixed { shape, .. } => *shape = shape.translated(shift),
+            Self::Tracked(target) => {
+                if let Motion::Ship(ship) = &mut target.motion {
+                    ship.pose.position += shift;
+                }
+            }
         }
         moved
     }
 }
 
 impl Own {
+    /// This one moved by a vector, metres.
+    pub(super) fn translated(&self, shift: Vector) -> Self {
+        let mut moved = self.clone();
+        moved.pose.position += shift;
+        if let OwnRoute::Points { points, .. } = &mut moved.route {
+            points.iter_mut().for_each(|point| *point += shift);
+        }
+        moved
+    }
+
     /// Duration of the route, seconds.
     pub(super) fn duration(&self) -> f64 {
-        let lengths = self.route.windows(2).map(|pair| (pair[1] - pair[0]).norm());
-        lengths.zip(&self.leg_speeds).map(|(l, v)| l / v).sum()
+        let OwnRoute::Points { points, leg_speeds } = &self.route else {
+            return ROUTE_S;
+        };
+        let lengths = points.windows(2).map(|pair| (pair[1] - pair[0]).norm());
+        lengths.zip(leg_speeds).map(|(l, v)| l / v).sum()
     }
 }

@@ -12,12 +12,12 @@ mod track;
 
 use std::collections::HashMap;
 
-use searoom_geometry::frame::{Georeference, KNOT_MPS, Vector, radians_from_deg};
+use searoom_geometry::frame::{Geographic, Georeference, KNOT_MPS, Vector, radians_from_deg};
 
 use crate::report::{Fix, HullSet, Identity, Kind, Name, Note, Notes, PositionSet, Report, Status};
 pub use own::OwnPosition;
 use own::OwnShip;
-pub use ship::{Listed, Ship};
+pub use ship::{Listed, STALE, Ship, WITHOUT_PLACE};
 use track::Track;
 
 /// How ships may have moved since their last fix, what is assumed of them from now on, and what is kept.
@@ -51,6 +51,9 @@ pub struct PictureSettings {
     pub coarse_s: f64,
     /// Age from which own ship's position is too old, seconds.
     pub own_stale_s: f64,
+    /// True where own ship is taken to be where its last fix has it, so that its error is not beside the others'
+    /// sets.
+    pub own_is_exact: bool,
     /// Most identities; beyond that the ones that are old and far are forgotten first.
     pub most_ships: usize,
     /// Own ship's identity, where reports of it from others are its position.
@@ -73,6 +76,7 @@ impl Default for PictureSettings {
             forgotten_s: 3600.0,
             coarse_s: 180.0,
             own_stale_s: 10.0,
+            own_is_exact: false,
             most_ships: 100_000,
             own: None,
         }
@@ -149,7 +153,7 @@ struct Known {
 ///     picture.take(&report, report.received);
 /// });
 /// let plane = Georeference::new(Geographic { lat_deg: 63.1, lon_deg: 9.4 }).expect("on the earth");
-/// let view = picture.at(1565218800.0, &plane, f64::INFINITY);
+/// let view = picture.at(1565218800.0, &plane, searoom_traffic::Reach::ALL);
 /// assert_eq!(view.ships.len(), 1);
 /// ```
 #[derive(Debug, Clone)]
@@ -161,6 +165,23 @@ pub struct Picture {
     forgotten: u64,
     crowded_out: u64,
     swept: f64,
+}
+
+/// Which ships matter: those that may come within a distance of own ship in a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reach {
+    /// How far own ship comes in this time, metres, and what is kept clear around it.
+    pub own_m: f64,
+    /// Seconds.
+    pub within_s: f64,
+}
+
+impl Reach {
+    /// Every ship.
+    pub const ALL: Self = Self {
+        own_m: f64::INFINITY,
+        within_s: 0.0,
+    };
 }
 
 /// The picture at a time, on a plane.
@@ -215,6 +236,16 @@ impl Picture {
     /// The identities of own ship that were heard, in order of time; more than one is a fault of the feed.
     pub fn own_identities(&self) -> &[Identity] {
         self.own.identities()
+    }
+
+    /// Own ship's last known place, however old.
+    pub fn own_place(&self) -> Option<Geographic> {
+        self.own.place()
+    }
+
+    /// Own ship's name, where it was heard.
+    pub fn own_name(&self) -> Option<&str> {
+        self.own.name().map(Name::as_str)
     }
 
     /// Takes in a report at a time of the picture's clock, seconds of Unix time. A fix that is dated later than
@@ -288,14 +319,19 @@ impl Picture {
         }
     }
 
-    /// Sets of all ships at a time that may come within `reach` metres of the plane's origin, or of own ship
-    /// where it is known. Ships are in order of their identities. O(ships).
-    pub fn at(&self, time: f64, plane: &Georeference, reach: f64) -> View {
+    /// Sets of all ships at a time that may come within reach of own ship, or of the plane's origin where own
+    /// ship is not known. Ships are in order of their identities. O(ships).
+    pub fn at(&self, time: f64, plane: &Georeference, reach: Reach) -> View {
         let own = self.own.at(time, plane, &self.settings);
         let about = own
             .as_ref()
             .map_or(Vector::zeros(), |own| own.pose.position);
-        let beside = own.as_ref().map_or(0.0, |own| own.radius_m);
+        let own_error = own.as_ref().map_or(0.0, |own| own.radius_m);
+        let beside = if self.settings.own_is_exact {
+            0.0
+        } else {
+            own_error
+        };
         let mut view = View {
             time,
             own,

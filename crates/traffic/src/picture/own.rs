@@ -1,9 +1,11 @@
 //! Own ship, from its own sentences or from reports of it.
 
-use searoom_geometry::frame::{Geographic, Georeference, Pose, direction};
+use searoom_geometry::frame::{Geographic, Georeference, Pose, Vector, direction};
 
 use super::{PictureSettings, Taken, ship};
-use crate::report::{Directions, Fix, Identity, Interval, PositionSet, Report, VelocitySet};
+use crate::report::{
+    Directions, Fix, HullSet, Identity, Interval, Name, Note, PositionSet, Report, VelocitySet,
+};
 
 /// Own ship at a time, on a plane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,6 +18,9 @@ pub struct OwnPosition {
     pub radius_m: f64,
     /// Seconds since the fix, at most.
     pub age_s: f64,
+    /// Its largest length and beam, metres, where it sends its size; the position is then that of the middle
+    /// of its hull, and else that of the antenna.
+    pub size_m: Option<[f64; 2]>,
 }
 
 /// What is known of own ship, each with its time.
@@ -27,6 +32,8 @@ pub(super) struct OwnShip {
     place: Option<(Interval, PositionSet)>,
     velocity: Option<(f64, VelocitySet)>,
     heading: Option<(f64, Directions)>,
+    hull: Option<HullSet>,
+    name: Option<Name>,
 }
 
 /// Most identities of own ship that are kept.
@@ -40,11 +47,17 @@ impl OwnShip {
             place: None,
             velocity: None,
             heading: None,
+            hull: None,
+            name: None,
         }
     }
 
     pub fn identities(&self) -> &[Identity] {
         &self.identities
+    }
+
+    pub fn name(&self) -> Option<&Name> {
+        self.name.as_ref()
     }
 
     pub fn place(&self) -> Option<Geographic> {
@@ -56,7 +69,7 @@ impl OwnShip {
         let is_given = self.given == Some(report.identity);
         if !report.is_own {
             if is_given {
-                self.learn(fix);
+                self.learn(report, fix);
                 return Some(Taken::Own);
             }
             return (self.identities.contains(&report.identity)).then_some(Taken::Echo);
@@ -76,11 +89,14 @@ impl OwnShip {
         {
             return Some(Taken::SecondOwn);
         }
-        self.learn(fix);
+        self.learn(report, fix);
         Some(Taken::Own)
     }
 
-    fn learn(&mut self, fix: Option<Fix>) {
+    fn learn(&mut self, report: &Report, fix: Option<Fix>) {
+        let sized = report.hull.filter(|_| !report.notes.has(Note::NoSize));
+        self.hull = sized.or(self.hull);
+        self.name = report.name.or(self.name);
         let Some(fix) = fix else { return };
         let time = fix.time.most;
         if let Some(position) = fix.position
@@ -138,12 +154,27 @@ impl OwnShip {
             + (uncertain_speed + beside) * age_s.max(0.0)
             + speed * spread
             + 0.5 * acceleration * age_s * age_s;
-        let position = plane.to_near_plane(place.at)? + moved;
+        let antenna = plane.to_near_plane(place.at)? + moved;
+        let (middle, beside) = match &self.hull {
+            None => (Vector::zeros(), 0.0),
+            Some(hull) => {
+                let lies = self.heading.filter(|(then, _)| is_fresh(*then));
+                let lies = lies.map_or(ahead, |(_, heading)| heading);
+                let turned = Directions {
+                    middle: lies.middle + ship::convergence(plane, place.at),
+                    ..lies
+                };
+                let centres = ship::centres(hull, &turned);
+                let middle = centres.centroid();
+                (middle, centres.translated(-middle).reach())
+            }
+        };
         Some(OwnPosition {
-            pose: Pose::new(position, heading),
+            pose: Pose::new(antenna + middle, heading),
             speed,
-            radius_m,
+            radius_m: radius_m + beside,
             age_s,
+            size_m: self.hull.map(|hull| [hull.length.most, hull.beam.most]),
         })
     }
 }

@@ -11,11 +11,13 @@ use searoom_model::target::{DomainKind, Motion, Representation, ShipTrack, Statu
 use searoom_model::vessel::Hull;
 
 use super::track::Track;
-use super::{Known, PictureSettings};
+use super::{Known, PictureSettings, Reach};
 use crate::report::{Directions, HullSet, Identity, Interval, Kind, Note, Notes, VelocitySet};
 
-pub(super) const WITHOUT_PLACE: &str = "heard without a place";
-pub(super) const STALE: &str = "not heard for too long";
+/// Why a ship is in no set.
+pub const WITHOUT_PLACE: &str = "heard without a place";
+/// Why a ship is in no set.
+pub const STALE: &str = "not heard for too long";
 
 /// A hull may swing about its heading by this angle while the ship lies, radians: 5°.
 const SWING: f64 = PI / 36.0;
@@ -275,7 +277,7 @@ fn since_the_fix(
 }
 
 /// Where the middle of the hull may be from the antenna, metres.
-fn centres(hull: &HullSet, headings: &Directions) -> ConvexPolygon {
+pub(super) fn centres(hull: &HullSet, headings: &Directions) -> ConvexPolygon {
     let half = |a: f64, b: f64| 0.5 * (a - b);
     let along = Interval::new(
         half(hull.ahead.least, hull.astern.most),
@@ -371,16 +373,17 @@ impl Ship {
         self.target.ship()
     }
 
-    /// True where it may be within a distance of a point, metres.
-    pub(super) fn is_within(&self, point: Vector, reach: f64) -> bool {
+    /// True where it may come within reach of a point.
+    pub(super) fn is_within(&self, point: Vector, reach: Reach) -> bool {
         let nearest = self.track().map(|ship| {
             let places = ship
                 .kept_positions
                 .as_ref()
                 .map_or(0.0, ConvexPolygon::reach);
-            (ship.pose.position - point).norm() - places - ship.hull.half_diagonal()
+            let run = (ship.speed + ship.speed_spread) * reach.within_s;
+            (ship.pose.position - point).norm() - places - ship.hull.half_diagonal() - run
         });
         // negated so that a NaN is near
-        !nearest.is_some_and(|nearest| nearest > reach)
+        !nearest.is_some_and(|nearest| nearest > reach.own_m)
     }
 }

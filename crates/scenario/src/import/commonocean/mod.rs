@@ -9,13 +9,13 @@ use roxmltree::Document;
 
 use super::assumed::Assumed;
 use super::situation::{Declared, GivenHull, Other, Own, Situation};
-use crate::status;
 use super::xml::{Names, Xml};
 use crate::limits;
+use crate::status;
 use geometry::{Body, State, body, shapes, state};
 use recorded::Recorded;
 use searoom_geometry::ConvexPolygon;
-use searoom_geometry::frame::{Pose, Vector};
+
 use searoom_input::text::is_line;
 use searoom_input::{Fault, Faults, Range, Remarks, abbreviated};
 
@@ -189,11 +189,8 @@ pub(super) fn situations(
         Ok(Situation {
             name: id.clone().unwrap_or_else(|| name.to_owned()),
             id,
-            own: Own {
-                pose: Pose::new(Vector::zeros(), own.pose.heading),
-                route: own.route.iter().map(|p| p - origin).collect(),
-                ..own
-            },
+            start_utc: None,
+            own: own.translated(-origin),
             others: others.iter().map(moved).collect(),
             earth: None,
             declared: Declared::default(),

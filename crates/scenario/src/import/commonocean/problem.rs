@@ -1,6 +1,6 @@
 //! A planning problem: own ship, its goal, and the time of arrival.
 
-use super::super::situation::{GivenHull, Own};
+use super::super::situation::{GivenHull, Own, OwnRoute};
 use super::super::xml::Xml;
 use super::geometry::{point, shapes, state};
 use crate::limits;
@@ -111,8 +111,10 @@ pub(super) fn own(
         pose: Pose::new(initial.position, wrap(initial.orientation)),
         speed,
         hull: GivenHull::NotInFormat,
-        leg_speeds: vec![desired; route.len() - 1],
-        route,
+        route: OwnRoute::Points {
+            leg_speeds: vec![desired; route.len() - 1],
+            points: route,
+        },
         horizon: latest.is_finite().then_some(latest),
     };
     Some((own, begins))

@@ -7,7 +7,7 @@ mod ship;
 use std::collections::BTreeSet;
 
 use super::assumed::{Assumed, TURNING_LENGTHS, USUAL_HULL};
-use super::situation::{Declared, GivenHull, Other, Own, Situation};
+use super::situation::{Declared, GivenHull, Other, Own, OwnRoute, Situation};
 use crate::status;
 use crate::{limits, plane};
 use searoom_geometry::frame::{
@@ -80,6 +80,7 @@ pub(super) fn situation(
     Ok(Situation {
         name: name.to_owned(),
         id: None,
+        start_utc: None,
         own,
         others,
         earth,
@@ -232,8 +233,10 @@ fn own(
         pose: Pose::new(points[0], initial.heading.unwrap_or(first)),
         speed: initial.speed.unwrap_or(route.speeds[0]),
         hull: fixed.hull,
-        route: points,
-        leg_speeds: route.speeds,
+        route: OwnRoute::Points {
+            points,
+            leg_speeds: route.speeds,
+        },
         horizon: None,
     })
 }

@@ -1,0 +1,182 @@
+//! A stream of reports on its way into the picture.
+
+use searoom_traffic::{Identity, Picture, PictureSettings, Reader, Report, Settings, Taken};
+
+/// Seconds by which a report may be ahead of the feed's clock. A report that is farther ahead moves the clock
+/// only where the next one agrees with it: one wrong time must not make every ship old.
+const JUMP_S: f64 = 60.0;
+
+/// The reader of a stream, the picture that it draws, and its clock.
+///
+/// Live, the clock is that of the machine. Otherwise it is the time of the latest report, so that a file is
+/// read as it was sent.
+#[derive(Debug)]
+pub struct Feed {
+    reader: Reader,
+    picture: Picture,
+    clock: FeedClock,
+    /// Reports after it are left out.
+    until: f64,
+    left_out: u64,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct FeedClock {
+    time: f64,
+    /// Farther ahead, until another report agrees.
+    ahead: f64,
+}
+
+impl FeedClock {
+    fn hear(&mut self, time: f64) {
+        let is_near = |from: f64| (time - from).abs() <= JUMP_S;
+        // the first time is taken as it is
+        if self.time.is_nan() || is_near(self.time) || is_near(self.ahead) {
+            self.time = self.time.max(time);
+            self.ahead = f64::NAN;
+        } else if time > self.time {
+            self.ahead = time;
+        }
+    }
+}
+
+impl Feed {
+    /// A feed without reports after a time, seconds of Unix time.
+    pub fn new(settings: Settings, picture: PictureSettings, until: f64) -> Self {
+        Self {
+            reader: Reader::new(settings),
+            picture: Picture::new(picture),
+            clock: FeedClock {
+                time: f64::NAN,
+                ahead: f64::NAN,
+            },
+            until,
+            left_out: 0,
+        }
+    }
+
+    /// Reads the next bytes of a file, dated by their own times. Lines without one are taken to be of the time
+    /// of the line before.
+    pub fn recorded(&mut self, bytes: &[u8]) {
+        let Self {
+            reader,
+            picture,
+            clock,
+            until,
+            left_out,
+        } = self;
+        let now = if clock.time.is_nan() { 0.0 } else { clock.time };
+        reader.bytes(bytes, now, |report| {
+            take(report, (picture, clock, *until, left_out));
+        });
+    }
+
+    /// Reads the next bytes of a live stream at a time of the machine's clock.
+    pub fn live(&mut self, bytes: &[u8], now: f64) {
+        self.clock.time = now;
+        let picture = &mut self.picture;
+        self.reader.bytes(bytes, now, |report| {
+            picture.take(&report, now);
+        });
+    }
+
+    /// The end of a file: what waits for other parts has none.
+    pub fn finish(&mut self) {
+        let Self {
+            reader,
+            picture,
+            clock,
+            until,
+            left_out,
+        } = self;
+        let now = if clock.time.is_nan() { 0.0 } else { clock.time };
+        if let Some(report) = reader.finish(now) {
+            take(report, (picture, clock, *until, left_out));
+        }
+    }
+
+    pub fn picture(&self) -> &Picture {
+        &self.picture
+    }
+
+    pub fn reader(&self) -> &Reader {
+        &self.reader
+    }
+
+    /// Time of the clock, seconds of Unix time; NaN before the first report.
+    pub fn time(&self) -> f64 {
+        self.clock.time
+    }
+
+    /// Number of reports after the end that was asked for.
+    pub fn left_out(&self) -> u64 {
+        self.left_out
+    }
+
+    /// What was read, and what became of it, a line each; only what there is.
+    pub fn counted(&self) -> Vec<String> {
+        let mut lines: Vec<String> = self
+            .reader
+            .counts()
+            .to_string()
+            .lines()
+            .map(str::to_owned)
+            .collect();
+        let taken = Taken::WORDS
+            .iter()
+            .map(|(word, what)| (self.picture.taken(*what), *word));
+        let [forgotten, crowded_out] = self.picture.forgotten();
+        let more = [
+            (self.left_out, "reports after the time that was asked for"),
+            (forgotten, "ships forgotten after a long silence"),
+            (crowded_out, "ships forgotten because there were too many"),
+        ];
+        let counted = taken.chain(more).filter(|(count, _)| *count > 0);
+        lines.extend(counted.map(|(count, word)| format!("{count} {word}")));
+        let own = self.picture.own_identities();
+        if own.len() > 1 {
+            let own: Vec<String> = own.iter().map(Identity::to_string).collect();
+            lines.push(format!(
+                "more than one own ship: {}; the first is taken",
+                own.join(", ")
+            ));
+        }
+        lines
+    }
+}
+
+fn take(
+    report: Report,
+    (picture, clock, until, left_out): (&mut Picture, &mut FeedClock, f64, &mut u64),
+) {
+    if report.received > until {
+        *left_out += 1;
+        return;
+    }
+    clock.hear(report.received);
+    picture.take(&report, clock.time);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_wrong_time_does_not_move_the_clock() {
+        let mut clock = FeedClock {
+            time: f64::NAN,
+            ahead: f64::NAN,
+        };
+        let after = |time: f64, clock: &mut FeedClock| {
+            clock.hear(time);
+            clock.time
+        };
+        let times = [
+            100.0, 110.0, 105.0, 9e9, 120.0, 3000.0, 3010.0, 50.0, 3020.0,
+        ];
+        let expected = [
+            100.0, 110.0, 110.0, 110.0, 120.0, 120.0, 3010.0, 3010.0, 3020.0,
+        ];
+        assert_eq!(times.map(|time| after(time, &mut clock)), expected);
+    }
+}
