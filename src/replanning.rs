@@ -90,6 +90,13 @@ impl PreviousPlan {
         })
     }
 
+    /// Gives a target the name that it has now.
+    pub(crate) fn rename(&mut self, from: &str, to: &str) {
+        for target in self.targets.iter_mut().filter(|target| target.name == from) {
+            to.clone_into(&mut target.name);
+        }
+    }
+
     fn target(&self, name: &str) -> Option<&PreviousTarget> {
         self.targets.iter().find(|target| target.name == name)
     }

@@ -18,6 +18,7 @@ use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::read_thresholds;
 use searoom::scenario::{Compliance, Fault, Scenario};
+use searoom::traffic::Source;
 
 use super::campaign::CampaignArgs;
 use super::input::rows;
@@ -79,6 +80,9 @@ pub enum Command {
     /// Turns files of other formats into scenario files
     #[command(after_help = example!("searoom import scenarios/dnv --out imported"))]
     Import(ImportArgs),
+    /// Watches live or recorded traffic: the ships with risk of collision, and a plan where there is any
+    #[command(after_help = example!("searoom watch own.toml --listen udp://10110"))]
+    Watch(WatchArgs),
     /// Compares all planners that apply, and two baselines, on the same scenarios
     #[command(after_help = example!("searoom compare scenarios/colregs --csv compared.csv"))]
     Compare(CompareArgs),
@@ -262,6 +266,38 @@ pub struct ImportArgs {
     pub out: PathBuf,
     #[command(flatten)]
     pub assumed: AssumedArgs,
+}
+
+#[derive(Debug, Args)]
+pub struct WatchArgs {
+    /// A scenario file with an origin: own ship, its mission and settings. The traffic gives positions
+    #[arg(value_name = "SCENARIO", value_hint = ValueHint::FilePath)]
+    pub scenario: PathBuf,
+    /// Where the traffic comes from: udp://[HOST:]PORT, tcp://HOST:PORT, a file, or - for standard
+    /// input; repeatable
+    #[arg(long, required = true, value_name = "SOURCE", value_parser = source)]
+    pub listen: Vec<Source>,
+    /// Own ship's MMSI, where the traffic has own ship as one among others
+    #[arg(long, value_name = "MMSI", value_parser = clap::value_parser!(u32).range(1..=999_999_999))]
+    pub own: Option<u32>,
+    /// Times the pace at which a file was recorded, or max
+    #[arg(long, value_name = "N", default_value = "1", value_parser = pace)]
+    pub speed: f64,
+    /// Seconds from one moment to the next
+    #[arg(long, value_name = "S", default_value = "1", value_parser = every)]
+    pub every_s: f64,
+    /// Seconds to watch, on the clock of the traffic [default: to its end, or to Ctrl-C]
+    #[arg(long, value_name = "S", value_parser = duration)]
+    pub duration_s: Option<f64>,
+    /// Compliance instead of the scenario's
+    #[arg(long, value_name = "C", value_parser = words(Compliance::WORDS))]
+    pub compliance: Option<Compliance>,
+    /// Keep the newest plan in this file, as `plan --json` writes it
+    #[arg(long, value_name = "FILE.json", value_hint = ValueHint::FilePath)]
+    pub plan: Option<PathBuf>,
+    /// Print one JSON document per moment, a line each
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Debug, Args)]
@@ -504,6 +540,26 @@ impl AssumedArgs {
         let assumed = Assumed::default().with_variants(self.variants);
         given.fold(assumed, |assumed, (what, value)| assumed.with(what, value))
     }
+}
+
+fn source(word: &str) -> Result<Source, String> {
+    Source::parse(word).ok_or_else(|| format!("allowed: {}", Source::ALLOWED))
+}
+
+/// Pace of a file; infinite for "max".
+fn pace(word: &str) -> Result<f64, String> {
+    match word {
+        "max" => Ok(f64::INFINITY),
+        _ => number(
+            word,
+            |n| (0.001..=1e6).contains(&n),
+            "0.001 to 1000000, or max",
+        ),
+    }
+}
+
+fn every(word: &str) -> Result<f64, String> {
+    number(word, |n| (0.1..=3600.0).contains(&n), "0.1 to 3600")
 }
 
 /// A date and a time with its offset from UTC.

@@ -19,6 +19,7 @@ mod simulate;
 mod status;
 mod suite;
 mod verify;
+mod watch;
 
 use std::process::ExitCode;
 
@@ -48,6 +49,7 @@ pub fn main() -> ExitCode {
         Command::Simulate(args) => simulate::simulate(args, &output),
         Command::Campaign(args) => campaign::campaign(&args.command, &output),
         Command::Import(args) => import::import(args, &output),
+        Command::Watch(args) => watch::watch(args, &output),
         Command::Compare(args) => compare::compare(args, &output),
         #[cfg(feature = "recording")]
         Command::Inspect(args) => inspect::inspect(args, &output),

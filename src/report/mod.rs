@@ -15,6 +15,7 @@ mod route;
 mod simulation;
 mod table;
 mod verification;
+mod watch;
 
 pub use crate::output::{WriteError, write_atomically};
 pub use crate::text::{broken, counted, printable, printable_lines};
@@ -31,3 +32,4 @@ pub use route::{RouteError, RouteFormat};
 pub use simulation::{simulation_markdown, simulation_text, simulations_line};
 pub use table::{Display, ResultTable};
 pub use verification::{simulation_verification_text, verification_line, verification_text};
+pub use watch::watch_text;

@@ -1,6 +1,6 @@
 //! A stream of reports on its way into the picture.
 
-use searoom_traffic::{Identity, Picture, PictureSettings, Reader, Report, Settings, Taken};
+use searoom_traffic::{Identity, Picture, PictureSettings, Reader, Settings, Taken};
 
 /// Seconds by which a report may be ahead of the feed's clock. A report that is farther ahead moves the clock
 /// only where the next one agrees with it: one wrong time must not make every ship old.
@@ -12,7 +12,8 @@ const JUMP_S: f64 = 60.0;
 /// read as it was sent.
 #[derive(Debug)]
 pub struct Feed {
-    reader: Reader,
+    /// One per source, because each may end within a line.
+    readers: Vec<Reader>,
     picture: Picture,
     clock: FeedClock,
     /// Reports after it are left out.
@@ -41,10 +42,12 @@ impl FeedClock {
 }
 
 impl Feed {
-    /// A feed without reports after a time, seconds of Unix time.
-    pub fn new(settings: Settings, picture: PictureSettings, until: f64) -> Self {
+    /// A feed of some sources without reports after a time, seconds of Unix time.
+    pub fn new(settings: &Settings, sources: usize, picture: PictureSettings, until: f64) -> Self {
         Self {
-            reader: Reader::new(settings),
+            readers: (0..sources)
+                .map(|_| Reader::new(settings.clone()))
+                .collect(),
             picture: Picture::new(picture),
             clock: FeedClock {
                 time: f64::NAN,
@@ -57,50 +60,46 @@ impl Feed {
 
     /// Reads the next bytes of a file, dated by their own times. Lines without one are taken to be of the time
     /// of the line before.
-    pub fn recorded(&mut self, bytes: &[u8]) {
-        let Self {
-            reader,
-            picture,
-            clock,
-            until,
-            left_out,
-        } = self;
-        let now = if clock.time.is_nan() { 0.0 } else { clock.time };
+    pub fn recorded(&mut self, source: usize, bytes: &[u8]) {
+        let now = if self.clock.time.is_nan() {
+            0.0
+        } else {
+            self.clock.time
+        };
+        let (picture, clock, left_out, until) = (
+            &mut self.picture,
+            &mut self.clock,
+            &mut self.left_out,
+            self.until,
+        );
+        let Some(reader) = self.readers.get_mut(source) else {
+            return;
+        };
         reader.bytes(bytes, now, |report| {
-            take(report, (picture, clock, *until, left_out));
+            if report.received > until {
+                *left_out += 1;
+                return;
+            }
+            clock.hear(report.received);
+            picture.take(&report, clock.time);
         });
     }
 
     /// Reads the next bytes of a live stream at a time of the machine's clock.
-    pub fn live(&mut self, bytes: &[u8], now: f64) {
+    pub fn live(&mut self, source: usize, bytes: &[u8], now: f64) {
         self.clock.time = now;
         let picture = &mut self.picture;
-        self.reader.bytes(bytes, now, |report| {
+        let Some(reader) = self.readers.get_mut(source) else {
+            return;
+        };
+        reader.bytes(bytes, now, |report| {
             picture.take(&report, now);
         });
     }
 
-    /// The end of a file: what waits for other parts has none.
-    pub fn finish(&mut self) {
-        let Self {
-            reader,
-            picture,
-            clock,
-            until,
-            left_out,
-        } = self;
-        let now = if clock.time.is_nan() { 0.0 } else { clock.time };
-        if let Some(report) = reader.finish(now) {
-            take(report, (picture, clock, *until, left_out));
-        }
-    }
-
+    /// What is known of own ship and the others.
     pub fn picture(&self) -> &Picture {
         &self.picture
-    }
-
-    pub fn reader(&self) -> &Reader {
-        &self.reader
     }
 
     /// Time of the clock, seconds of Unix time; NaN before the first report.
@@ -115,12 +114,12 @@ impl Feed {
 
     /// What was read, and what became of it, a line each; only what there is.
     pub fn counted(&self) -> Vec<String> {
-        let mut lines: Vec<String> = self
-            .reader
-            .counts()
-            .to_string()
-            .lines()
-            .map(str::to_owned)
+        let counts = self
+            .readers
+            .iter()
+            .map(|reader| reader.counts().to_string());
+        let mut lines: Vec<String> = counts
+            .flat_map(|text| text.lines().map(str::to_owned).collect::<Vec<_>>())
             .collect();
         let taken = Taken::WORDS
             .iter()
@@ -143,18 +142,6 @@ impl Feed {
         }
         lines
     }
-}
-
-fn take(
-    report: Report,
-    (picture, clock, until, left_out): (&mut Picture, &mut FeedClock, f64, &mut u64),
-) {
-    if report.received > until {
-        *left_out += 1;
-        return;
-    }
-    clock.hear(report.received);
-    picture.take(&report, clock.time);
 }
 
 #[cfg(test)]

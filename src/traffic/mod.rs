@@ -7,8 +7,12 @@
 
 mod feed;
 mod situation;
+mod source;
+mod watch;
 
 pub use feed::Feed;
 pub use situation::{Own, Surroundings, surroundings};
+pub use source::{Arrival, Source};
+pub use watch::{Moment, Watch};
 
 pub use searoom_traffic::*;

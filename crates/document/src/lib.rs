@@ -18,6 +18,7 @@ mod simulation;
 mod suite;
 mod targets;
 mod verification;
+mod watch;
 
 use std::io::{self, Write};
 
@@ -49,12 +50,13 @@ pub use suite::*;
 pub use targets::sets::{InitialSetDocument, VelocitySetDocument, vertices};
 pub use targets::*;
 pub use verification::*;
+pub use watch::*;
 
 /// Makes the JSON schema of a document.
 pub type MakeSchema = fn() -> Schema;
 
 /// The JSON schemas of the documents, by the command that prints each with `--json`.
-pub const SCHEMAS: [(&str, MakeSchema); 11] = [
+pub const SCHEMAS: [(&str, MakeSchema); 12] = [
     ("plan", schema::<PlanDocument>),
     ("suite", schema::<SuiteDocument>),
     ("lint", schema::<LintDocument>),
@@ -66,6 +68,7 @@ pub const SCHEMAS: [(&str, MakeSchema); 11] = [
     ("check", schema::<CheckDocument>),
     ("verify", schema::<VerificationDocument>),
     ("inspect", schema::<InspectionDocument>),
+    ("watch", schema::<WatchDocument>),
 ];
 
 fn schema<T: JsonSchema>() -> Schema {

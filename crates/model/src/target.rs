@@ -292,21 +292,21 @@ impl ShipTrack {
     /// The middle of the headings that the ship may have until `time`, and half their width, radians:
     /// at most half a turn. Of a known route every leg counts, at any time.
     pub fn headings(&self, time: f64) -> (f64, f64) {
-        if let Some(spread) = self.heading_spread {
-            // `min` of a NaN and a number is the number: every heading
-            let half = (spread + self.turn_rate.abs() * time).min(std::f64::consts::PI);
-            return (self.pose.heading, half);
-        }
-        let (middle, turned) = if !self.route.is_empty() {
-            self.route_headings()
-        } else if self.turn_rate == 0.0 {
-            (self.middle_course(), 0.0)
-        } else {
-            (self.middle_course(), self.turn_rate.abs() * time)
+        // a rate of 0 does not turn the ship, however long it lasts
+        let turned = match self.turn_rate == 0.0 {
+            true => 0.0,
+            false => self.turn_rate.abs() * time,
+        };
+        let (middle, half) = match self.heading_spread {
+            Some(spread) => (self.pose.heading, spread + turned),
+            None if !self.route.is_empty() => {
+                let (middle, turned) = self.route_headings();
+                (middle, self.course_half_width() + turned)
+            }
+            None => (self.middle_course(), self.course_half_width() + turned),
         };
         // `min` of a NaN and a number is the number: every heading
-        let half = (self.course_half_width() + turned).min(std::f64::consts::PI);
-        (middle, half)
+        (middle, half.min(std::f64::consts::PI))
     }
 
     /// An outer polygon of the possible positions at t = 0 about the estimate, metres: the disc of

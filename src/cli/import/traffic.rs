@@ -50,13 +50,12 @@ pub fn import(
     output: &Output,
 ) -> anyhow::Result<ExitStatus> {
     let time = 1e-3 * at.timestamp_millis() as f64;
-    let mut feed = Feed::new(Settings::default(), picture(args), time);
+    let mut feed = Feed::new(&Settings::default(), 1, picture(args), time);
     for file in &args.files {
         if let Err(error) = read(file, &mut feed) {
             return Ok(output.refuse(&InputError::unread(&files::name(file), error)));
         }
     }
-    feed.finish();
     output.notes(None, &[("traffic".to_owned(), feed.counted())]);
     let place = match args.own_pose {
         Some([lat_deg, lon_deg, ..]) => Geographic { lat_deg, lon_deg },
@@ -129,11 +128,11 @@ fn read(file: &Path, feed: &mut Feed) -> std::io::Result<()> {
     loop {
         match source.read(&mut chunk)? {
             0 => break,
-            read => feed.recorded(&chunk[..read]),
+            read => feed.recorded(0, &chunk[..read]),
         }
     }
     // a file may end without the end of its line, and another one follows
-    feed.recorded(b"\n");
+    feed.recorded(0, b"\n");
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::Context;
 use comfy_table::Table;
@@ -46,6 +47,8 @@ pub struct Output {
     messages: Option<usize>,
     /// Only documents and errors.
     pub quiet: bool,
+    /// True where standard output was closed by its reader.
+    closed: AtomicBool,
 }
 
 impl Output {
@@ -67,6 +70,7 @@ impl Output {
         let results = || terminal.then(|| measured(&Table::new()));
         Self {
             quiet,
+            closed: AtomicBool::new(false),
             messages: columns.or_else(|| messages().flatten()),
             display: Display {
                 colour: wanted && terminal && !is_dumb(),
@@ -83,6 +87,21 @@ impl Output {
         }
     }
 
+    /// True where nobody reads standard output any more.
+    pub fn is_closed(&self) -> bool {
+        self.closed.load(Ordering::Relaxed)
+    }
+
+    /// Prints a result in place of the one before, where there is a terminal.
+    pub fn screen(&self, text: &str) -> ExitStatus {
+        if self.display.width.is_some() && self.display.colour && !self.quiet {
+            let mut stdout = std::io::stdout().lock();
+            // a terminal that cannot be written to is found by what comes next
+            let _ = stdout.write_all(b"\x1b[H\x1b[2J");
+        }
+        self.result(text)
+    }
+
     /// Prints what was asked for and nothing else, as it is, also where the command is quiet.
     /// Reports a bad status if printing fails; a closed pipe is not an error.
     pub fn print(&self, text: &str) -> ExitStatus {
@@ -90,7 +109,10 @@ impl Output {
         let text = self.shown(text);
         match writeln!(stdout, "{text}").and_then(|()| stdout.flush()) {
             Ok(()) => ExitStatus::Good,
-            Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitStatus::Good,
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => {
+                self.closed.store(true, Ordering::Relaxed);
+                ExitStatus::Good
+            }
             Err(error) => {
                 self.error(&format_args!("standard output: {error}"));
                 ExitStatus::BadInput
@@ -311,6 +333,11 @@ pub fn beyond_verify(bytes: usize) -> Option<String> {
 
 pub fn json(document: &impl Serialize) -> anyhow::Result<String> {
     searoom::document::json(document).context("a document cannot be written")
+}
+
+/// A document on one line.
+pub fn json_line(document: &impl Serialize) -> anyhow::Result<String> {
+    serde_json::to_string(document).context("a document cannot be written")
 }
 
 pub fn csv(rows: Vec<Vec<String>>) -> anyhow::Result<Vec<u8>> {

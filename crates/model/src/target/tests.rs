@@ -236,6 +236,16 @@ fn the_outer_hull_holds_the_hull_on_every_heading() {
         let around = searoom_geometry::outer_disc(40.0, ship.middle_course());
         assert!(hull.minkowski_sum(&around).vertices().len() <= DISC_SIDES);
     }
+    // headings apart from the courses: a ship that drifts to any side lies in one direction, for ever
+    let mut lying = turning_ship(&mut rng);
+    (lying.course_spread, lying.turn_rate) = (std::f64::consts::PI, 0.0);
+    lying.heading_spread = Some(0.1);
+    assert_eq!(lying.headings(f64::INFINITY), (lying.pose.heading, 0.1));
+    lying.turn_rate = 0.01;
+    assert_eq!(lying.headings(20.0).1, 0.1 + 0.2);
+    assert_eq!(lying.headings(f64::INFINITY).1, std::f64::consts::PI);
+    lying.heading_spread = Some(f64::NAN);
+    assert_eq!(lying.headings(0.0).1, std::f64::consts::PI);
     let mut known = turning_ship(&mut rng);
     (known.course_spread, known.starboard_turn) = (0.0, 0.0);
     assert_eq!(known.outer_hull(100.0), known.hull.polygon(&known.pose));

@@ -1,0 +1,399 @@
+//! Own ship in live traffic: once a cycle the risk of collision with each ship, and where there is any, a plan
+//! that goes on from the last one.
+//!
+//! ```text
+//! Picture at a time ─► targets ┐
+//! scenario file, own ship now ─┴► Scenario ─► sets ─► dangerous ships ─► plan ─► WatchDocument
+//!                                    ▲ PreviousPlan ─────────────────────┘
+//! ```
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use searoom_traffic::{Identity, Note, Picture, Reach, Ship};
+
+use super::situation::{Own, Surroundings, surroundings};
+use crate::colregs::Role;
+use crate::document::verdict_line;
+use crate::document::{
+    DangerousShipDocument, OwnNowDocument, PlanDocument, WatchDocument, WatchLegDocument,
+    WatchPlanDocument, planned_legs,
+};
+use crate::frame::{Georeference, Pose, course_deg_from_heading, direction, heading_of};
+use crate::obstacle::SpaceTimeObstacle;
+use crate::pipeline::{self, Run, TargetSets};
+use crate::replanning::{PreviousPlan, remember};
+use crate::scenario::{Compliance, Fault, OwnNow, Scenario, after};
+use crate::target::ShipTrack;
+use crate::tolerance::TOUCH_M;
+use crate::trajectory::Segment;
+
+/// Own ship may be this far from where its mission has it, turning radii, before the mission begins anew from
+/// the place nearest to it.
+const OFF_MISSION_RADII: f64 = 4.0;
+
+/// Share of a mission after which it begins anew: a route goes on beyond the part that the horizon holds.
+const SAILED_SHARE: f64 = 0.5;
+
+/// Own ship is slower than its mission may ask for: so much more may be sailed in a horizon.
+const FASTER: f64 = 1.2;
+
+/// What a watch knows from one cycle to the next.
+#[derive(Debug)]
+pub struct Watch {
+    text: String,
+    folder: PathBuf,
+    compliance: Option<Compliance>,
+    plane: Georeference,
+    horizon: f64,
+    /// Own ship's largest speed, m/s.
+    fastest: f64,
+    mission: Option<Mission>,
+    previous: Option<PreviousPlan>,
+    /// True where own ship did not follow the last plan.
+    is_off_plan: bool,
+    names: HashMap<(Identity, u32), String>,
+}
+
+/// The mission from where own ship was when it began.
+#[derive(Debug)]
+struct Mission {
+    /// Without tracked ships.
+    scenario: Scenario,
+    /// Seconds of Unix time.
+    began: f64,
+}
+
+/// One moment of a watch.
+#[derive(Debug)]
+pub struct Moment {
+    /// For programs.
+    pub document: WatchDocument,
+    /// The plan, where there is one.
+    pub run: Option<Box<Run>>,
+}
+
+impl Watch {
+    /// Own ship, its mission and settings are those of a scenario file in a folder, which has to have an
+    /// `origin`. The feed gives own ship's position, and the ships: tracked targets of the file are left out.
+    ///
+    /// The faults are those of the file.
+    pub fn new(
+        text: &str,
+        folder: &Path,
+        compliance: Option<Compliance>,
+    ) -> Result<Self, Vec<Fault>> {
+        let scenario = Scenario::parse_beside(text, folder)?;
+        let Some(plane) = scenario.earth else {
+            let allowed = "{ lat_deg, lon_deg }, because the feed has positions on the earth";
+            return Err(vec![Fault::new("origin", "nothing", allowed)]);
+        };
+        Ok(Self {
+            text: text.to_owned(),
+            folder: folder.to_owned(),
+            compliance,
+            plane,
+            horizon: scenario.horizon,
+            fastest: scenario.own_ship.max_speed(),
+            mission: None,
+            previous: None,
+            is_off_plan: false,
+            names: HashMap::new(),
+        })
+    }
+
+    /// The risk at a time in seconds of Unix time, and a plan where there is any.
+    pub fn at(&mut self, picture: &Picture, time: f64) -> Moment {
+        let reach = Reach {
+            own_m: FASTER * self.fastest * self.horizon,
+            within_s: self.horizon,
+        };
+        let mut around = surroundings(picture, time, &self.plane, reach);
+        let mut events = Vec::new();
+        let own = around.own.take();
+        let mut document = WatchDocument {
+            time: utc(time),
+            time_s: time,
+            own: own.as_ref().map(|own| self.own_document(own)),
+            ships: around.ships.len(),
+            beyond: around.beyond,
+            in_no_set: around.remarks.cautions.clone(),
+            dangerous: Vec::new(),
+            plan: None,
+            events: Vec::new(),
+            took_s: 0.0,
+        };
+        let Some(own) = own else {
+            events.push(
+                "own ship's position, course or speed is not known: no risk is computed".to_owned(),
+            );
+            // what own ship does unseen is no plan
+            (self.mission, self.previous) = (None, None);
+            return Moment {
+                document: WatchDocument { events, ..document },
+                run: None,
+            };
+        };
+        let run = match self.scenario(&own, &around, time, &mut events) {
+            Ok(scenario) => self.judged(scenario, &own, &around, &mut document, &mut events),
+            Err(faults) => {
+                events.extend(faults.iter().map(ToString::to_string));
+                None
+            }
+        };
+        document.events = events;
+        Moment {
+            document,
+            run: run.map(Box::new),
+        }
+    }
+
+    fn own_document(&self, own: &Own) -> OwnNowDocument {
+        let place = self.plane.to_geographic(own.pose.position);
+        OwnNowDocument {
+            lat_deg: place.lat_deg,
+            lon_deg: place.lon_deg,
+            course_deg: course_deg_from_heading(own.pose.heading),
+            speed_mps: own.speed,
+            radius_m: own.radius_m,
+            age_s: own.age_s,
+        }
+    }
+
+    /// The scenario of a moment.
+    fn scenario(
+        &mut self,
+        own: &Own,
+        around: &Surroundings,
+        time: f64,
+        events: &mut Vec<String>,
+    ) -> Result<Scenario, Vec<Fault>> {
+        self.renew_mission(own, time, events)?;
+        let Some(mission) = &self.mission else {
+            return Err(vec![Fault::new("mission", "none", "a mission")]);
+        };
+        let elapsed = time - mission.began;
+        let mut scenario = mission.scenario.clone();
+        scenario.time += elapsed;
+        scenario.desired = scenario.desired.remaining(elapsed);
+        scenario.stay = scenario.stay.map(|until| (until - elapsed).max(0.0));
+        scenario.own_ship.pose = own.pose;
+        scenario.own_ship.speed = own.speed;
+        scenario.targets.extend(around.targets());
+        scenario
+            .remarks
+            .cautions
+            .extend_from_slice(&around.remarks.cautions);
+        Ok(scenario)
+    }
+
+    /// Begins the mission anew where there is none, where own ship is far from it, and where half of it is
+    /// sailed. Not in a manoeuvre, which returns to it.
+    fn renew_mission(
+        &mut self,
+        own: &Own,
+        time: f64,
+        events: &mut Vec<String>,
+    ) -> Result<(), Vec<Fault>> {
+        if let Some(mission) = &self.mission {
+            let (elapsed, desired) = (time - mission.began, &mission.scenario.desired);
+            let off = (desired.position_at(elapsed) - own.pose.position).norm();
+            let most = OFF_MISSION_RADII * mission.scenario.own_ship.turning_radius;
+            let is_sailed = elapsed > SAILED_SHARE * desired.duration();
+            let follows = self.previous.is_some() && !self.is_off_plan;
+            if follows || elapsed >= 0.0 && off <= most && !is_sailed {
+                return Ok(());
+            }
+            if off > most {
+                events.push(format!(
+                    "own ship is {off:.0} m from its mission, which begins anew here"
+                ));
+            }
+        }
+        let now = OwnNow {
+            place: self.plane.to_geographic(own.pose.position),
+            heading: own.pose.heading,
+            speed: own.speed,
+        };
+        let mut scenario = Scenario::parse_at(&self.text, &self.folder, &now)?;
+        if let Some(compliance) = self.compliance {
+            scenario.compliance = compliance;
+        }
+        let before = scenario.targets.len();
+        scenario.targets.retain(|target| target.sets().is_some());
+        let left_out = before - scenario.targets.len();
+        if left_out > 0 && self.mission.is_none() {
+            events.push(format!(
+                "{left_out} ships of the file left out: the feed gives the ships"
+            ));
+        }
+        scenario.memory = crate::scenario::Memory::default();
+        // its times count from the mission before
+        self.previous = None;
+        self.mission = Some(Mission {
+            scenario,
+            began: time,
+        });
+        Ok(())
+    }
+
+    /// Fills in the dangerous ships, and plans where there are any.
+    fn judged(
+        &mut self,
+        mut scenario: Scenario,
+        own: &Own,
+        around: &Surroundings,
+        document: &mut WatchDocument,
+        events: &mut Vec<String>,
+    ) -> Option<Run> {
+        let sets = pipeline::sets(&scenario);
+        let first = scenario.targets.len() - around.ships.len();
+        let mut dangerous: Vec<DangerousShipDocument> = around
+            .ships
+            .iter()
+            .zip(&sets[first..])
+            .filter_map(|(ship, sets)| dangerous(&scenario, own, ship, sets))
+            .collect();
+        let urgency = |ship: &DangerousShipDocument| ship.enters_set_s.unwrap_or(f64::INFINITY);
+        dangerous.sort_by(|a, b| {
+            (urgency(a).total_cmp(&urgency(b)))
+                .then(a.tcpa_s.total_cmp(&b.tcpa_s))
+                .then(a.identity.cmp(&b.identity))
+        });
+        document.dangerous = dangerous;
+        let nominal = nominal(&scenario);
+        let is_met = |sets: &TargetSets| sets.hard.is_entered(&nominal, TOUCH_M);
+        if document.dangerous.is_empty() && self.previous.is_none() && !sets.iter().any(is_met) {
+            return None;
+        }
+        self.rename(around);
+        self.is_off_plan = false;
+        if let Some(previous) = &self.previous
+            && let Err(fault) = remember(previous, &mut scenario)
+        {
+            events.push(format!("the last plan is not followed: {}", fault.found));
+            self.is_off_plan = true;
+        }
+        events.extend(
+            scenario
+                .memory
+                .outside_velocities
+                .iter()
+                .map(|name| format!("'{name}' has left the velocities that the last plan assumes")),
+        );
+        events.extend(
+            scenario
+                .memory
+                .outside_places
+                .iter()
+                .map(|name| format!("'{name}' is at a place that it could not reach")),
+        );
+        let run = pipeline::run(scenario);
+        let has_manoeuvre = !run.planned.manoeuvres.is_empty();
+        self.previous =
+            PreviousPlan::of(&run).filter(|_| has_manoeuvre || !document.dangerous.is_empty());
+        run.planned.outcome.plan()?;
+        let plan = PlanDocument::of(&run);
+        let legs = planned_legs(&plan).into_iter().map(|leg| WatchLegDocument {
+            from_s: leg.motion.start_time,
+            until_s: leg.motion.end_time(),
+            course_deg: leg.course_deg(),
+            speed_mps: leg.motion.speed,
+            because_of: leg.because_of,
+            events: leg.events,
+        });
+        document.plan = Some(WatchPlanDocument {
+            verdict: verdict_line(&plan),
+            safe: plan.is_safe(),
+            keeps_plan: run.planned.is_remainder(),
+            legs: legs.collect(),
+        });
+        Some(run)
+    }
+
+    /// A ship whose name is heard now is the one that had another name in the last plan.
+    fn rename(&mut self, around: &Surroundings) {
+        let mut names = HashMap::new();
+        for ship in &around.ships {
+            let key = (ship.identity, ship.place);
+            if let (Some(before), Some(previous)) = (self.names.get(&key), &mut self.previous)
+                && *before != ship.target.name
+            {
+                previous.rename(before, &ship.target.name);
+            }
+            names.insert(key, ship.target.name.clone());
+        }
+        self.names = names;
+    }
+}
+
+/// The desired trajectory as lines.
+fn nominal(scenario: &Scenario) -> Vec<Segment> {
+    let legs = scenario.desired.legs().iter();
+    let lines = legs.map(|leg| {
+        let pose = Pose::new(leg.start, heading_of(leg.direction));
+        Segment::straight(pose, leg.start_time, leg.length / leg.speed, leg.speed)
+    });
+    lines.collect()
+}
+
+/// A ship whose set own ship enters on its course, or toward which it has a role.
+fn dangerous(
+    scenario: &Scenario,
+    own: &Own,
+    ship: &Ship,
+    sets: &TargetSets,
+) -> Option<DangerousShipDocument> {
+    let track = ship.track()?;
+    let held = Segment::straight(own.pose, 0.0, scenario.horizon, own.speed);
+    let enters_set_s = sets.hard.first_contact(&held, TOUCH_M);
+    let role = sets.encounter.role;
+    if enters_set_s.is_none() && role == Role::None {
+        return None;
+    }
+    let between = track.pose.position - own.pose.position;
+    let (cpa_m, tcpa_s) = closest(scenario, own, track);
+    let notes = ship.notes.iter().filter(|note| *note != Note::Raim);
+    Some(DangerousShipDocument {
+        name: ship.target.name.clone(),
+        identity: ship.identity.to_string(),
+        status: ship.status,
+        range_m: between.norm(),
+        bearing_deg: course_deg_from_heading(heading_of(between)),
+        course_deg: course_deg_from_heading(track.pose.heading),
+        speed_mps: track.speed,
+        cpa_m,
+        tcpa_s,
+        enters_set_s,
+        risk: match enters_set_s {
+            Some(_) => sets.hard.peak_risk(&held).risk,
+            None => 0.0,
+        },
+        role: role.to_string(),
+        age_s: ship.age_s,
+        notes: notes.map(|note| note.to_string()).collect(),
+    })
+}
+
+/// Distance of the hulls when the middles are closest, metres, and when that is, seconds.
+fn closest(scenario: &Scenario, own: &Own, track: &ShipTrack) -> (f64, f64) {
+    let apart = track.pose.position - own.pose.position;
+    let closing = track.velocity() - direction(own.pose.heading) * own.speed;
+    let time = (-apart.dot(&closing) / closing.norm_squared()).clamp(0.0, scenario.horizon);
+    // ships that do not move to each other are as near now as ever
+    let time = if time.is_nan() { 0.0 } else { time };
+    let moved = own.pose.position + direction(own.pose.heading) * (own.speed * time);
+    let hull = scenario
+        .own_ship
+        .hull
+        .polygon(&Pose::new(moved, own.pose.heading));
+    let theirs = track.hull.polygon(&track.pose_at(time));
+    (hull.separation(&theirs), time)
+}
+
+fn utc(time: f64) -> String {
+    let date = after(chrono::DateTime::UNIX_EPOCH, time);
+    date.map_or_else(String::new, |date| {
+        date.format("%Y-%m-%dT%H:%M:%SZ").to_string()
+    })
+}
