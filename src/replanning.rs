@@ -97,6 +97,11 @@ impl PreviousPlan {
         }
     }
 
+    /// True for a target that was planned for.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.target(name).is_some()
+    }
+
     fn target(&self, name: &str) -> Option<&PreviousTarget> {
         self.targets.iter().find(|target| target.name == name)
     }

@@ -116,6 +116,7 @@ impl Watch {
             time_s: time,
             own: own.as_ref().map(|own| self.own_document(own)),
             ships: around.ships.len(),
+            clear: 0,
             beyond: around.beyond,
             in_no_set: around.remarks.cautions.clone(),
             dangerous: Vec::new(),
@@ -246,26 +247,6 @@ impl Watch {
         document: &mut WatchDocument,
         events: &mut Vec<String>,
     ) -> Option<Run> {
-        let sets = pipeline::sets(&scenario);
-        let first = scenario.targets.len() - around.ships.len();
-        let mut dangerous: Vec<DangerousShipDocument> = around
-            .ships
-            .iter()
-            .zip(&sets[first..])
-            .filter_map(|(ship, sets)| dangerous(&scenario, own, ship, sets))
-            .collect();
-        let urgency = |ship: &DangerousShipDocument| ship.enters_set_s.unwrap_or(f64::INFINITY);
-        dangerous.sort_by(|a, b| {
-            (urgency(a).total_cmp(&urgency(b)))
-                .then(a.tcpa_s.total_cmp(&b.tcpa_s))
-                .then(a.identity.cmp(&b.identity))
-        });
-        document.dangerous = dangerous;
-        let nominal = nominal(&scenario);
-        let is_met = |sets: &TargetSets| sets.hard.is_entered(&nominal, TOUCH_M);
-        if document.dangerous.is_empty() && self.previous.is_none() && !sets.iter().any(is_met) {
-            return None;
-        }
         self.rename(around);
         self.is_off_plan = false;
         if let Some(previous) = &self.previous
@@ -274,21 +255,47 @@ impl Watch {
             events.push(format!("the last plan is not followed: {}", fault.found));
             self.is_off_plan = true;
         }
-        events.extend(
-            scenario
-                .memory
-                .outside_velocities
-                .iter()
-                .map(|name| format!("'{name}' has left the velocities that the last plan assumes")),
-        );
-        events.extend(
-            scenario
-                .memory
-                .outside_places
-                .iter()
-                .map(|name| format!("'{name}' is at a place that it could not reach")),
-        );
-        let run = pipeline::run(scenario);
+        let left = [
+            (
+                &scenario.memory.outside_velocities,
+                "has left the velocities that the last plan assumes",
+            ),
+            (
+                &scenario.memory.outside_places,
+                "is at a place that it could not reach",
+            ),
+        ];
+        for (names, what) in left {
+            events.extend(names.iter().map(|name| format!("'{name}' {what}")));
+        }
+        let sets = pipeline::sets(&scenario);
+        let first = scenario.targets.len() - around.ships.len();
+        let mut dangers: Vec<DangerousShipDocument> = (around.ships.iter().zip(&sets[first..]))
+            .filter_map(|(ship, sets)| dangerous(&scenario, own, ship, sets))
+            .collect();
+        let urgency = |ship: &DangerousShipDocument| ship.enters_set_s.unwrap_or(f64::INFINITY);
+        dangers.sort_by(|a, b| {
+            (urgency(a).total_cmp(&urgency(b)))
+                .then(a.tcpa_s.total_cmp(&b.tcpa_s))
+                .then(a.identity.cmp(&b.identity))
+        });
+        document.dangerous = dangers;
+        let nominal = nominal(&scenario);
+        let is_met = |sets: &TargetSets| sets.with_domain.is_entered(&nominal, TOUCH_M);
+        let is_dangerous = |name: &str| document.dangerous.iter().any(|ship| ship.name == name);
+        let is_known = |name: &str| self.previous.as_ref().is_some_and(|p| p.has(name));
+        let wanted: Vec<bool> = (scenario.targets.iter().zip(&sets))
+            .map(|(target, sets)| {
+                let name = target.name.as_str();
+                target.sets().is_some() || is_dangerous(name) || is_known(name) || is_met(sets)
+            })
+            .collect();
+        if !wanted.contains(&true) {
+            self.previous = None;
+            return None;
+        }
+        let (run, planned_for) = planned(&scenario, &sets, wanted);
+        document.clear = scenario.targets.len() - planned_for;
         let has_manoeuvre = !run.planned.manoeuvres.is_empty();
         self.previous =
             PreviousPlan::of(&run).filter(|_| has_manoeuvre || !document.dangerous.is_empty());
@@ -325,6 +332,41 @@ impl Watch {
         }
         self.names = names;
     }
+}
+
+/// The plan for the ships that are wanted, and for those whose sets with domain a plan without them would
+/// enter: the others do not bear on it. Returns the number of targets that it is for, too.
+fn planned(scenario: &Scenario, sets: &[TargetSets], mut wanted: Vec<bool>) -> (Run, usize) {
+    loop {
+        let run = pipeline::run(only(scenario, &wanted));
+        let segments = run
+            .planned
+            .outcome
+            .plan()
+            .map(|plan| plan.trajectory.segments());
+        let mut is_whole = true;
+        for (wanted, sets) in wanted.iter_mut().zip(sets) {
+            // without a plan every ship may bear on it
+            let is_met = segments.is_none_or(|plan| sets.with_domain.is_entered(plan, TOUCH_M));
+            if !*wanted && is_met {
+                (*wanted, is_whole) = (true, false);
+            }
+        }
+        if is_whole {
+            return (run, wanted.iter().filter(|wanted| **wanted).count());
+        }
+    }
+}
+
+/// A scenario with some of its targets.
+fn only(scenario: &Scenario, wanted: &[bool]) -> Scenario {
+    let mut some = scenario.clone();
+    let mut kept = wanted.iter();
+    some.targets.retain(|_| kept.next() == Some(&true));
+    // one per target in the same order, or none at all
+    let mut kept = wanted.iter();
+    some.memory.targets.retain(|_| kept.next() == Some(&true));
+    some
 }
 
 /// The desired trajectory as lines.

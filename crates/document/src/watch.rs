@@ -17,6 +17,10 @@ pub struct WatchDocument {
     pub own: Option<OwnNowDocument>,
     /// Ships that may come near within the horizon, each in a set.
     pub ships: usize,
+    /// How many of them the plan is clear of though it is not made for them: it enters neither their sets nor
+    /// their domains.
+    #[serde(default)]
+    pub clear: usize,
     /// Ships too far to matter.
     pub beyond: usize,
     /// Ships in no set, and why: not heard for too long, or heard without a place.
