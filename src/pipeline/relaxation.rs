@@ -262,6 +262,7 @@ impl Relaxer<'_> {
             Outcome::Infeasible(reason) => reason.clone(),
         };
         let relaxed = self.relaxed(first, &why);
+        let relaxed = self.much_cheaper_than(&relaxed).unwrap_or(relaxed);
         let relaxed = self.finished(&relaxed).unwrap_or(relaxed);
         let arrives = relaxed.planned.outcome.plan().is_none_or(Plan::arrives);
         let is_relaxed = relaxed.level > RelaxationLevel::Compliant || !arrives;
@@ -430,7 +431,7 @@ impl Relaxer<'_> {
         };
         let mut found = found?;
         if found.reductions.iter().all(|metres| *metres == 0.0) {
-            found.level = first.level;
+            found.level = RelaxationLevel::Compliant;
         }
         let other = found.planned.outcome.plan().map_or(f64::NAN, |p| p.cost);
         let cost = plan.cost;
