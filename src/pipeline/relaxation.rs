@@ -407,8 +407,8 @@ impl Relaxer<'_> {
     /// A lawful plan that costs a tenth of a manoeuvre by the rules that is far off its schedule: one of the
     /// whole request that is no such manoeuvre, the rest of the last plan, or a manoeuvre in smaller
     /// domains. During a manoeuvre only the rest of the last plan.
-    fn much_cheaper_than(&self, first: &Attempt) -> Option<Attempt> {
-        let plan = first.planned.outcome.plan()?;
+    fn much_cheaper_than(&self, answer: &Attempt) -> Option<Attempt> {
+        let plan = answer.planned.outcome.plan()?;
         let is_dear = plan.method == PlanMethod::Rules && self.is_far_off(plan);
         if !is_dear || self.time_left().is_zero() {
             return None;
