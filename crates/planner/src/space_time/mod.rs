@@ -291,9 +291,8 @@ fn plan_with(
             explored: &explored,
         };
         let kept = groups::by_the_rules(&context, &nominal_motion, due, effort);
-        let broken = |motion: &[Segment]| broken_rules(problem, motion);
-        let fewer = |kept: &RulePlan| broken(&kept.motion) < broken(&nominal_motion);
-        let kept = kept.filter(|kept| too_near.is_none() || fewer(kept));
+        let is_lawful = |kept: &RulePlan| broken_rules(problem, &kept.motion) == 0;
+        let kept = kept.filter(|kept| too_near.is_none() || is_lawful(kept));
         let Explored { counts, graph } = explored.into_inner();
         if let Some(kept) = kept {
             let plan = Plan::measured(problem, kept.motion, PlanMethod::Rules);

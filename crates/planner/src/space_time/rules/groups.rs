@@ -25,7 +25,7 @@ pub(crate) struct RulePlan {
 
 /// The cheapest lawful plan of manoeuvres one after another, as far as a larger group costs no less than a
 /// smaller one. The nominal motion meets a set or land, or comes within a length of a target, after `contact`
-/// seconds; where it meets none, a plan that breaks fewer rules.
+/// seconds.
 ///
 /// The next manoeuvre begins when own ship is on the route again. Several targets may be passed in
 /// one manoeuvre: of the groupings the cheapest by the rules is taken; where none is, the one that breaks
