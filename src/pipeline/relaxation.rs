@@ -262,6 +262,7 @@ impl Relaxer<'_> {
             Outcome::Infeasible(reason) => reason.clone(),
         };
         let relaxed = self.relaxed(first, &why);
+        let relaxed = self.much_cheaper_than(&relaxed).unwrap_or(relaxed);
         let relaxed = self.finished(&relaxed).unwrap_or(relaxed);
         let arrives = relaxed.planned.outcome.plan().is_none_or(Plan::arrives);
         let is_relaxed = relaxed.level > RelaxationLevel::Compliant || !arrives;
@@ -406,8 +407,8 @@ impl Relaxer<'_> {
     /// A lawful plan that costs a tenth of a manoeuvre by the rules that is far off its schedule: one of the
     /// whole request that is no such manoeuvre, the rest of the last plan, or a manoeuvre in smaller
     /// domains. During a manoeuvre only the rest of the last plan.
-    fn much_cheaper_than(&self, first: &Attempt) -> Option<Attempt> {
-        let plan = first.planned.outcome.plan()?;
+    fn much_cheaper_than(&self, answer: &Attempt) -> Option<Attempt> {
+        let plan = answer.planned.outcome.plan()?;
         let is_dear = plan.method == PlanMethod::Rules && self.is_far_off(plan);
         if !is_dear || self.time_left().is_zero() {
             return None;
@@ -430,7 +431,7 @@ impl Relaxer<'_> {
         };
         let mut found = found?;
         if found.reductions.iter().all(|metres| *metres == 0.0) {
-            found.level = first.level;
+            found.level = RelaxationLevel::Compliant;
         }
         let other = found.planned.outcome.plan().map_or(f64::NAN, |p| p.cost);
         let cost = plan.cost;

@@ -126,6 +126,29 @@ fn no_detour_of_half_an_hour_is_made_for_a_manoeuvre_by_the_rules() {
     assert!(delay.abs() < 300.0, "{delay}");
 }
 
+/// A manoeuvre in half the domain took nine minutes more than one in a smaller domain, or one in the whole domain
+/// fifteen, because the held course is clear of half the domain, though within a length of the target (Rule 8(d)).
+#[test]
+fn a_dear_manoeuvre_gives_way_to_a_lawful_one_in_smaller_domains() {
+    for (text, most) in [
+        (include_str!("../faults/dear-in-smaller-domains.toml"), 30.0),
+        (
+            include_str!("../faults/held-course-within-a-length.toml"),
+            240.0,
+        ),
+    ] {
+        let run = run(text);
+        let plan = run.planned.outcome.plan().expect("a plan");
+        assert_eq!(plan.method, PlanMethod::Rules);
+        assert!(run.evaluation.as_ref().is_some_and(|e| e.verified()));
+        for report in run.judged_compliance().iter().flatten() {
+            assert_eq!(report.broken().count(), 0, "{report:?}");
+        }
+        let delay = plan.trajectory.end_time() - run.scenario.desired.duration();
+        assert!(delay < most, "{}: {delay}", run.scenario.title);
+    }
+}
+
 /// The target is on own starboard beam, near, and on nearly the same course.
 #[test]
 fn a_turn_at_less_speed_where_neither_alone_keeps_the_rules() {

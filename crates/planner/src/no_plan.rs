@@ -137,12 +137,12 @@ pub enum NoPlan {
         /// Time of the contact, seconds.
         time: f64,
     },
-    /// What plans of the whole request cost is out of all proportion to a lawful one that keeps less.
+    /// What plans in larger domains cost is out of all proportion to a lawful one that keeps less.
     #[error(
-        "a plan clear of whole ship domains costs {cost:.0} m², many times the {other:.0} m² of this one, which breaks no rule"
+        "a plan clear of larger ship domains costs {cost:.0} m², many times the {other:.0} m² of this one, which breaks no rule"
     )]
     OutOfProportion {
-        /// *J* of the plan of the whole request, m².
+        /// *J* of the plan in larger domains, m².
         cost: f64,
         /// *J* of the plan that is taken, m².
         other: f64,

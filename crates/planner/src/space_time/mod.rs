@@ -59,7 +59,9 @@ use piece::pieces;
 use proxy::{Proxy, by_obstacle, first_contact, first_met, within_reach};
 use route::Route;
 use rules::automaton::{Effort, Explored};
-use rules::groups;
+use rules::bodies::first_within_a_length;
+use rules::compliance::broken_rules;
+use rules::groups::{self, RulePlan};
 use searoom_geometry::tolerance;
 use searoom_model::trajectory::{DesiredTrajectory, Segment, Trajectory};
 use searoom_parallel as parallel;
@@ -277,14 +279,20 @@ fn plan_with(
     let first_conflict = first_conflict.reduce(f64::min);
     let at = first_conflict.unwrap_or(0.0);
     let context = Context::new(problem, &route, proxies, &blocks, at);
-    let has_duty = !problem.duty().is_none() && first_conflict.is_some();
+    let is_clear = first_conflict.is_none() && problem.under_way.is_none();
+    let too_near = is_clear.then(|| first_within_a_length(&context, &nominal_motion));
+    let too_near = too_near.flatten();
+    let due = first_conflict.or(too_near);
+    let has_duty = !problem.duty().is_none() && due.is_some();
     if has_duty || problem.under_way.is_some() {
         let explored = RefCell::default();
         let effort = Effort {
             clock,
             explored: &explored,
         };
-        let kept = groups::by_the_rules(&context, &nominal_motion, effort);
+        let kept = groups::by_the_rules(&context, &nominal_motion, due, effort);
+        let is_lawful = |kept: &RulePlan| broken_rules(problem, &kept.motion) == 0;
+        let kept = kept.filter(|kept| too_near.is_none() || is_lawful(kept));
         let Explored { counts, graph } = explored.into_inner();
         if let Some(kept) = kept {
             let plan = Plan::measured(problem, kept.motion, PlanMethod::Rules);
@@ -301,7 +309,7 @@ fn plan_with(
                 ..Planned::of(outcome)
             };
         }
-        if clock.is_up() {
+        if clock.is_up() && too_near.is_none() {
             return Planned::of(Outcome::Deadline(None));
         }
         if first_conflict.is_some() {

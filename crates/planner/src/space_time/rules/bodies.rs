@@ -4,6 +4,7 @@
 use crate::space_time::context::Context;
 use crate::space_time::land;
 use crate::space_time::proxy::{Proxy, first_met};
+use crate::space_time::rules::compliance::broken_rules;
 use crate::space_time::rules::hug::HeldTurn;
 use crate::space_time::rules::manoeuvre::Manoeuvres;
 use searoom_colregs::Encountered;
@@ -76,6 +77,20 @@ impl<'a> Passing<'a> {
     pub(super) fn within_a_length(&self) -> Option<&PolytopeObstacle> {
         self.within_a_length.as_ref()
     }
+}
+
+/// First time at which a motion that breaks a rule comes within a length of a target that own ship keeps clear
+/// of, seconds.
+pub(crate) fn first_within_a_length(context: &Context, motion: &[Segment]) -> Option<f64> {
+    let all = context.problem.encountered.iter();
+    let passing = all.map(|e| Passing::new(context, e));
+    let times = passing.filter(Passing::keeps_clear).filter_map(|p| {
+        let body = p.within_a_length()?;
+        let meets = |s| contact::first_contact(body, s, TOUCH_M);
+        motion.iter().find_map(meets)
+    });
+    let first = times.reduce(f64::min);
+    first.filter(|_| broken_rules(context.problem, motion) > 0)
 }
 
 impl Manoeuvres<'_, '_> {

@@ -111,7 +111,7 @@ fn closest(mut from: f64, mut to: f64, distance: impl Fn(f64) -> f64) -> f64 {
 }
 
 /// Number of rules that both judges find broken by a motion. O(targets × seconds).
-pub(super) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
+pub(crate) fn broken_rules(problem: &Problem, motion: &[Segment]) -> usize {
     let Ok(trajectory) = Trajectory::new(motion.to_vec()) else {
         return usize::MAX;
     };

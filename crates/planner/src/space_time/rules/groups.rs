@@ -24,7 +24,8 @@ pub(crate) struct RulePlan {
 }
 
 /// The cheapest lawful plan of manoeuvres one after another, as far as a larger group costs no less than a
-/// smaller one.
+/// smaller one. The nominal motion meets a set or land, or comes within a length of a target, after `contact`
+/// seconds.
 ///
 /// The next manoeuvre begins when own ship is on the route again. Several targets may be passed in
 /// one manoeuvre: of the groupings the cheapest by the rules is taken; where none is, the one that breaks
@@ -33,9 +34,10 @@ pub(crate) struct RulePlan {
 pub(crate) fn by_the_rules(
     context: &Context,
     nominal_motion: &[Segment],
+    contact: Option<f64>,
     effort: Effort,
 ) -> Option<RulePlan> {
-    let plan = cheapest(context, nominal_motion, effort);
+    let plan = cheapest(context, nominal_motion, contact, effort);
     let begun = context.problem.under_way;
     if plan.is_some() || !begun.is_some_and(|begun| begun.is_returning) {
         return plan;
@@ -49,17 +51,22 @@ pub(crate) fn by_the_rules(
         problem: &problem,
         ..*context
     };
-    cheapest(&context, nominal_motion, effort)
+    cheapest(&context, nominal_motion, contact, effort)
 }
 
-fn cheapest(context: &Context, nominal_motion: &[Segment], effort: Effort) -> Option<RulePlan> {
+fn cheapest(
+    context: &Context,
+    nominal_motion: &[Segment],
+    contact: Option<f64>,
+    effort: Effort,
+) -> Option<RulePlan> {
     let settings = &context.problem.settings.rules;
     let root = Begun {
         motion: nominal_motion.to_vec(),
         from: 0.0,
         cost: 0.0,
         // a manoeuvre under way is for the present risks, also where nothing would be met
-        contact: match context.first_conflict(nominal_motion) {
+        contact: match contact {
             None if context.problem.under_way.is_some() => Some(0.0),
             contact => contact,
         },

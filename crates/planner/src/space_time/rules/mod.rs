@@ -3,8 +3,8 @@
 //! manoeuvres without roles.
 
 pub(crate) mod automaton;
-mod bodies;
-mod compliance;
+pub(crate) mod bodies;
+pub(crate) mod compliance;
 mod departure;
 pub(crate) mod groups;
 mod hug;
