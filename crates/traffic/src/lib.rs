@@ -6,22 +6,31 @@
 //! ```
 //!
 //! What does not become a report is counted by its reason ([`Counts`]), so that nothing vanishes silently.
-//! So far the reader takes AIS: VDM and VDO with messages 1 to 5, 9, 11, 18, 19, 21, 24 and 27 of
-//! Recommendation ITU-R M.1371-5. What each code means, and what it does to a set, is a table in
-//! docs/reference/traffic.md.
+//! The reader takes sentences of NMEA 0183:
+//!
+//! - AIS: VDM and VDO with messages 1 to 5, 9, 11, 18, 19, 21, 24 and 27 of Recommendation ITU-R M.1371-5;
+//! - own ship: RMC, GGA, GNS, GLL, HDT, THS and VTG;
+//! - radar targets: TTM, TLL and TLB.
+//!
+//! What each code means, and what it does to a set, is a table in docs/reference/traffic.md.
 
 mod ais;
 mod assembly;
 mod bits;
 mod counts;
+mod fields;
+mod own;
+mod radar;
 mod reader;
 mod report;
 mod sentence;
+mod settings;
+mod time;
 
-pub use ais::Settings;
 pub use counts::{Counts, Dropped};
 pub use reader::Reader;
 pub use report::{
     Directions, Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, PositionSet, Report,
     SourceId, Status, VelocitySet,
 };
+pub use settings::{RelativeMotion, Settings};
