@@ -37,6 +37,12 @@ searoom_geometry::words! {
         NoOwnHeading => "radar targets without own heading",
         /// More radar targets have names than are kept.
         TooManyNames => "names of radar targets while too many were kept",
+        /// Cells that are missing, or no identity or no time.
+        Row => "rows with wrong cells",
+        /// The same identity, time and place.
+        Again => "rows that were there before",
+        /// The table lacks a column that is needed.
+        NoColumn => "rows of a table that lacks a column",
     }
 }
 

@@ -82,7 +82,6 @@ pub(crate) fn course_set(
 }
 
 /// Heading and its half step in degrees; where there is none, that of a fast ship is about its course.
-#[expect(dead_code)]
 pub(crate) fn heading_set(
     heading: Option<(f64, f64)>,
     velocity: VelocitySet,

@@ -12,6 +12,8 @@
 //! - own ship: RMC, GGA, GNS, GLL, HDT, THS and VTG;
 //! - radar targets: TTM, TLL and TLB.
 //!
+//! It also reads tables of AIS reports as CSV, by the names of their columns. The first line decides.
+//!
 //! What each code means, and what it does to a set, is a table in docs/reference/traffic.md.
 
 mod ais;
@@ -25,6 +27,7 @@ mod reader;
 mod report;
 mod sentence;
 mod settings;
+mod table;
 mod time;
 
 pub use counts::{Counts, Dropped};
@@ -34,3 +37,4 @@ pub use report::{
     SourceId, Status, VelocitySet,
 };
 pub use settings::{RelativeMotion, Settings};
+pub use table::MissingColumn;

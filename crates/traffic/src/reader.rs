@@ -8,11 +8,27 @@ use crate::radar::Radar;
 use crate::report::{Report, SourceId};
 use crate::sentence::{MOST_BYTES, Sentence, sentence};
 use crate::settings::Settings;
+use crate::table::{Cells, MissingColumn, Table};
 
 /// Most sources that are told apart; later ones count as one.
 const MOST_SOURCES: usize = 1000;
 
-/// Reads sentences, keeps what waits for its other parts, and counts what is dropped.
+/// Longest line of a table, and of what may be the names of its columns, bytes.
+const MOST_ROW_BYTES: usize = 65_536;
+
+/// What a stream consists of. The first line that is of one of these decides.
+#[derive(Debug, Default)]
+enum Format {
+    #[default]
+    Unknown,
+    Sentences,
+    Table(Box<(Table, Cells)>),
+}
+
+/// Reads sentences or rows, keeps what waits for its other parts, and counts what is dropped.
+///
+/// The first line decides what the stream consists of: a sentence of NMEA 0183, or the names of a table's
+/// columns. A line that is neither is dropped, and the next one decides.
 ///
 /// ```
 /// use searoom_traffic::{Reader, Settings};
@@ -28,6 +44,7 @@ const MOST_SOURCES: usize = 1000;
 #[derive(Debug)]
 pub struct Reader {
     settings: Settings,
+    format: Format,
     assembler: Assembler,
     counts: Counts,
     own: Own,
@@ -43,6 +60,7 @@ impl Reader {
     pub fn new(settings: Settings) -> Self {
         Self {
             settings,
+            format: Format::Unknown,
             assembler: Assembler::default(),
             counts: Counts::default(),
             own: Own::default(),
@@ -55,6 +73,23 @@ impl Reader {
 
     pub fn counts(&self) -> &Counts {
         &self.counts
+    }
+
+    /// Names of the table's columns that are not read; empty for sentences.
+    pub fn unread_columns(&self) -> &[String] {
+        self.table().map_or(&[], Table::unread)
+    }
+
+    /// The column whose lack makes every row of the table be dropped.
+    pub fn missing_column(&self) -> Option<&MissingColumn> {
+        self.table().and_then(Table::missing)
+    }
+
+    fn table(&self) -> Option<&Table> {
+        match &self.format {
+            Format::Table(of) => Some(&of.0),
+            _ => None,
+        }
     }
 
     /// The name of a source, as it was sent.
@@ -84,7 +119,11 @@ impl Reader {
         }
         if !self.skips {
             self.begun.extend_from_slice(bytes);
-            if self.begun.len() > MOST_BYTES {
+            let most = match self.format {
+                Format::Sentences => MOST_BYTES,
+                _ => MOST_ROW_BYTES,
+            };
+            if self.begun.len() > most {
                 self.counts.lines += 1;
                 self.counts.drop(Dropped::TooLong);
                 (self.begun, self.skips) = (Vec::new(), true);
@@ -101,17 +140,36 @@ impl Reader {
     }
 
     /// Reads a whole line: its reports, or that of the message that it completes.
-    pub fn line(&mut self, line: &[u8], now: f64, found: impl FnMut(Report)) {
+    pub fn line(&mut self, line: &[u8], now: f64, mut found: impl FnMut(Report)) {
         let line = line.trim_ascii();
         if line.is_empty() {
             return;
         }
         self.counts.lines += 1;
-        let read = match line.len() > MOST_BYTES {
-            true => Err(Dropped::TooLong),
-            false => sentence(line),
+        if let Format::Unknown = self.format {
+            match begins(line) {
+                // the names of columns
+                Some(format @ Format::Table(_)) => {
+                    self.format = format;
+                    return;
+                }
+                Some(format) => self.format = format,
+                None => {}
+            }
+        }
+        let read = match &mut self.format {
+            Format::Table(of) => {
+                let (table, cells) = &mut **of;
+                row(line, table, cells, &self.settings).map(|report| {
+                    report.into_iter().for_each(|report| {
+                        self.counts.reports += 1;
+                        found(report);
+                    });
+                })
+            }
+            _ if line.len() > MOST_BYTES => Err(Dropped::TooLong),
+            _ => sentence(line).and_then(|sentence| self.sentence(&sentence, now, found)),
         };
-        let read = read.and_then(|sentence| self.sentence(&sentence, now, found));
         if let Err(why) = read {
             self.counts.drop(why);
         }
@@ -186,4 +244,32 @@ impl Reader {
         });
         SourceId(index as u16)
     }
+}
+
+/// What a stream consists of that begins with a line; `None` where the line is of nothing that is read.
+fn begins(line: &[u8]) -> Option<Format> {
+    // a mark of the order of bytes
+    let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
+    match line.first()? {
+        b'!' | b'$' | b'\\' => Some(Format::Sentences),
+        _ => {
+            let mut cells = Cells::default();
+            let table = Table::new(cells.of(str::from_utf8(line).ok()?)?)?;
+            Some(Format::Table(Box::new((table, cells))))
+        }
+    }
+}
+
+/// The report of a line of a table.
+fn row(
+    line: &[u8],
+    table: &mut Table,
+    cells: &mut Cells,
+    settings: &Settings,
+) -> Result<Option<Report>, Dropped> {
+    if line.len() > MOST_ROW_BYTES {
+        return Err(Dropped::TooLong);
+    }
+    let line = String::from_utf8_lossy(line);
+    table.report(cells.of(&line).ok_or(Dropped::Row)?, settings)
 }

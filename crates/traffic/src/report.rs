@@ -269,6 +269,12 @@ impl Name {
         (!name.as_str().trim().is_empty()).then_some(name)
     }
 
+    /// The beginning of a text without what cannot be seen, for messages.
+    pub(crate) fn printable(text: &str, most: usize) -> String {
+        let seen = text.trim().chars().filter(|letter| !is_hidden(*letter));
+        seen.take(most).collect()
+    }
+
     pub fn as_str(&self) -> &str {
         str::from_utf8(&self.letters[..usize::from(self.length)]).unwrap_or_default()
     }
@@ -323,6 +329,8 @@ searoom_geometry::words! {
         Acquiring => "the radar is acquiring it",
         /// Course and speed of a radar target that are relative, nobody says to what.
         RelativeCourse => "course and speed are relative to own heading or to own motion",
+        /// Descriptions differ in which distance is that to port.
+        Sides => "port and starboard of the antenna may be exchanged",
     }
 }
 

@@ -107,7 +107,7 @@ fn has(message: &Message, note: Note) -> bool {
 }
 
 fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-9 * (1.0 + b.abs())
+    a == b || (a - b).abs() <= 1e-9 * (1.0 + a.abs().min(b.abs()))
 }
 
 /// The messages with a position, where it stands in them, and its parts of a degree.

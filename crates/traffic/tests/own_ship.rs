@@ -45,7 +45,7 @@ fn dropped(body: &str, why: Dropped) -> bool {
 }
 
 fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-9 * (1.0 + b.abs())
+    a == b || (a - b).abs() <= 1e-9 * (1.0 + a.abs().min(b.abs()))
 }
 
 const RMC: &str = "GPRMC,120009.00,A,5630.0000,N,00312.0000,E,12.0,090.0,291126,,,A";

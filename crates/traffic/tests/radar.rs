@@ -81,7 +81,7 @@ fn from_own(at: Geographic) -> Vector {
 }
 
 fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-9 * (1.0 + b.abs())
+    a == b || (a - b).abs() <= 1e-9 * (1.0 + a.abs().min(b.abs()))
 }
 
 const TTM: &str = "RATTM,07,4.00,120.0,T,12.0,270.0,T,0.5,10.0,N,,T,,120010.00,A";
