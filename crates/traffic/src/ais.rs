@@ -316,8 +316,8 @@ impl Reading<'_> {
         }
     }
 
-    /// When the fix was taken, and whether it was measured: in the minute that is nearest to the reception, or
-    /// in the one before where that is in the future.
+    /// When the fix was taken, and whether it was measured: in the minute that is nearest to the reception,
+    /// or in the one before where that is in the future.
     fn time(&self, from: usize, notes: &mut Notes) -> (Interval, bool) {
         let second = self.bits.unsigned(from, 6);
         if second < 60 {

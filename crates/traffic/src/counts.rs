@@ -43,6 +43,18 @@ searoom_geometry::words! {
         Again => "rows that were there before",
         /// The table lacks a column that is needed.
         NoColumn => "rows of a table that lacks a column",
+        /// No JSON, or cut off.
+        Document => "documents that are broken",
+        /// Neither a delta nor a full model of Signal K.
+        OtherDocument => "documents of another kind",
+        /// Neither own ship, nor a number, nor a UUID.
+        Context => "deltas of another context",
+        /// Values whose paths are not used.
+        Path => "values of other paths",
+        /// A text for a number, or nothing that a number can be.
+        Value => "values of a wrong type",
+        /// More contexts of Signal K than are kept; the others begin anew.
+        TooManyContexts => "contexts that were silent while too many were kept",
     }
 }
 

@@ -1,5 +1,5 @@
-//! From numbers to sets, for every format: each code that stands for "unknown" or "or more" widens a set here,
-//! with a [`Note`].
+//! From numbers to sets, for every format: each code that stands for "unknown" or "or more" widens a set
+//! here, with a [`Note`].
 
 use std::f64::consts::PI;
 
@@ -15,8 +15,8 @@ use crate::settings::Settings;
 /// Longest ship, metres: more is typed in wrongly.
 const LONGEST_M: f64 = 500.0;
 
-/// Metres for a degree of latitude, and for one of longitude at the equator. Each is the largest on WGS 84, so
-/// that half a step is not too small.
+/// Metres for a degree of latitude, and for one of longitude at the equator. Each is the largest on WGS 84,
+/// so that half a step is not too small.
 const DEGREE_NORTH_M: f64 = 60.0 * 1861.7;
 const DEGREE_EAST_M: f64 = 60.0 * 1855.4;
 
@@ -112,8 +112,8 @@ pub(crate) fn without_heading(
     }
 }
 
-/// Rate of turn from its root in 4.733 degrees a minute, starboard positive: half a step of the root each way.
-/// From 126 on it has no bound, and 127 gives the side alone.
+/// Rate of turn from its root in 4.733 degrees a minute, starboard positive: half a step of the root each
+/// way. From 126 on it has no bound, and 127 gives the side alone.
 pub(crate) fn turn_rate(root: f64) -> Interval {
     let rate = |root: f64| radians_from_deg((root / 4.733).powi(2)) / 60.0;
     let size = match root.abs() {
@@ -130,8 +130,8 @@ pub(crate) fn turn_rate(root: f64) -> Interval {
     }
 }
 
-/// Hull from the distances in metres from the antenna to bow, stern, port and starboard side. `bounds` are the
-/// largest length and beam where a size is not given.
+/// Hull from the distances in metres from the antenna to bow, stern, port and starboard side. `bounds` are
+/// the largest length and beam where a size is not given.
 pub(crate) fn hull(
     [bow, stern, port, starboard]: [f64; 4],
     [length, beam]: [f64; 2],

@@ -12,7 +12,8 @@
 //! - own ship: RMC, GGA, GNS, GLL, HDT, THS and VTG;
 //! - radar targets: TTM, TLL and TLB.
 //!
-//! It also reads tables of AIS reports as CSV, by the names of their columns. The first line decides.
+//! It also reads tables of AIS reports as CSV, by the names of their columns, and Signal K: deltas, and the
+//! full model. The first line decides.
 //!
 //! What each code means, and what it does to a set, is a table in docs/reference/traffic.md.
 
@@ -20,6 +21,7 @@ mod ais;
 mod assembly;
 mod bits;
 mod counts;
+mod documents;
 mod fields;
 mod own;
 mod radar;
@@ -27,6 +29,7 @@ mod reader;
 mod report;
 mod sentence;
 mod settings;
+mod signalk;
 mod table;
 mod time;
 

@@ -1,7 +1,7 @@
 //! Own ship's sentences, and what is remembered of them for its radar targets.
 //!
-//! A report says what its sentence says. What a sentence does not carry is unknown in its report: HDT has a fix
-//! without a position, which is no ship without a place.
+//! A report says what its sentence says. What a sentence does not carry is unknown in its report: HDT has a
+//! fix without a position, which is no ship without a place.
 
 use std::f64::consts::PI;
 

@@ -3,15 +3,20 @@
 use crate::ais;
 use crate::assembly::Assembler;
 use crate::counts::{Counts, Dropped};
+use crate::documents::{Documents, MOST_DOCUMENT_BYTES};
 use crate::own::{self, Own, Reception};
 use crate::radar::Radar;
-use crate::report::{Report, SourceId};
+use crate::report::{Name, Report, SourceId};
 use crate::sentence::{MOST_BYTES, Sentence, sentence};
 use crate::settings::Settings;
+use crate::signalk::{SignalK, Sources};
 use crate::table::{Cells, MissingColumn, Table};
 
 /// Most sources that are told apart; later ones count as one.
 const MOST_SOURCES: usize = 1000;
+
+/// Letters of a source's name that tell it from others.
+const MOST_LETTERS: usize = 64;
 
 /// Longest line of a table, and of what may be the names of its columns, bytes.
 const MOST_ROW_BYTES: usize = 65_536;
@@ -23,12 +28,13 @@ enum Format {
     Unknown,
     Sentences,
     Table(Box<(Table, Cells)>),
+    Json(Box<(Documents, SignalK)>),
 }
 
-/// Reads sentences or rows, keeps what waits for its other parts, and counts what is dropped.
+/// Reads sentences, rows or documents, keeps what waits for its other parts, and counts what is dropped.
 ///
-/// The first line decides what the stream consists of: a sentence of NMEA 0183, or the names of a table's
-/// columns. A line that is neither is dropped, and the next one decides.
+/// The first line decides what the stream consists of: a sentence of NMEA 0183, the names of a table's
+/// columns, or a document of Signal K. A line that is none of them is dropped, and the next one decides.
 ///
 /// ```
 /// use searoom_traffic::{Reader, Settings};
@@ -49,7 +55,7 @@ pub struct Reader {
     counts: Counts,
     own: Own,
     radar: Radar,
-    sources: Vec<Vec<u8>>,
+    sources: Numbered,
     /// The beginning of a line whose end has not come.
     begun: Vec<u8>,
     /// True within a line that is too long.
@@ -65,7 +71,7 @@ impl Reader {
             counts: Counts::default(),
             own: Own::default(),
             radar: Radar::default(),
-            sources: Vec::new(),
+            sources: Numbered::default(),
             begun: Vec::new(),
             skips: false,
         }
@@ -92,13 +98,14 @@ impl Reader {
         }
     }
 
-    /// The name of a source, as it was sent.
+    /// The name of a source: what can be seen of it, up to 64 characters.
     pub fn source(&self, source: SourceId) -> &[u8] {
-        let known = self.sources.get(usize::from(source.0));
+        let known = self.sources.0.get(usize::from(source.0));
         known.map_or(b"others", Vec::as_slice)
     }
 
-    /// Reads the next bytes of a stream, which may begin and end within a line. Lines without a time are dated
+    /// Reads the next bytes of a stream, which may begin and end within a line. Lines without a time are
+    /// dated
     /// `now`, in seconds of Unix time.
     pub fn bytes(&mut self, mut bytes: &[u8], now: f64, mut found: impl FnMut(Report)) {
         while let Some(end) = bytes.iter().position(|byte| *byte == b'\n') {
@@ -121,6 +128,8 @@ impl Reader {
             self.begun.extend_from_slice(bytes);
             let most = match self.format {
                 Format::Sentences => MOST_BYTES,
+                Format::Json(_) => MOST_DOCUMENT_BYTES,
+                _ if self.begun.first() == Some(&b'{') => MOST_DOCUMENT_BYTES,
                 _ => MOST_ROW_BYTES,
             };
             if self.begun.len() > most {
@@ -136,12 +145,19 @@ impl Reader {
         self.skips = false;
         let line = std::mem::take(&mut self.begun);
         self.line(&line, now, found);
+        if let Format::Json(of) = &mut self.format
+            && of.0.finish()
+        {
+            self.counts.drop(Dropped::Document);
+        }
         self.assembler.finish(&mut self.counts);
     }
 
     /// Reads a whole line: its reports, or that of the message that it completes.
     pub fn line(&mut self, line: &[u8], now: f64, mut found: impl FnMut(Report)) {
-        let line = line.trim_ascii();
+        // a document that goes over many lines is indented
+        let line = line.trim_ascii_end();
+        let (indented, line) = (line, line.trim_ascii_start());
         if line.is_empty() {
             return;
         }
@@ -167,6 +183,19 @@ impl Reader {
                     });
                 })
             }
+            Format::Json(of) => {
+                let (documents, signal_k) = &mut **of;
+                let counts = &mut self.counts;
+                if let Some(document) = documents.add(indented, |why| counts.drop(why)) {
+                    let about = (&self.settings, &mut self.sources);
+                    let own = &mut self.own;
+                    signal_k.read(&document, now, about, counts, |report| {
+                        own.keep(&report);
+                        found(report);
+                    });
+                }
+                Ok(())
+            }
             _ if line.len() > MOST_BYTES => Err(Dropped::TooLong),
             _ => sentence(line).and_then(|sentence| self.sentence(&sentence, now, found)),
         };
@@ -188,7 +217,7 @@ impl Reader {
         let is_own = formatter == b"VDO";
         if is_own || formatter == b"VDM" {
             let part = sentence.part(is_own)?;
-            let source = part.tag.source.map(|name| self.source_of(name));
+            let source = part.tag.source.map(|name| self.sources.number(name));
             let message = self.assembler.add(&part, (source, now), &mut self.counts);
             let Some(message) = message else {
                 return Ok(());
@@ -203,7 +232,7 @@ impl Reader {
             return Ok(());
         }
         let fields = sentence.fields()?;
-        let source = sentence.tag.source.map(|name| self.source_of(name));
+        let source = sentence.tag.source.map(|name| self.sources.number(name));
         let received = sentence.tag.time.unwrap_or(now);
         let reception = Reception { received, source };
         if let Some(report) = own::report(formatter, &fields, reception, &self.settings) {
@@ -231,16 +260,28 @@ impl Reader {
             false => Err(Dropped::OtherSentence),
         }
     }
+}
 
-    fn source_of(&mut self, name: &[u8]) -> SourceId {
-        let known = self.sources.iter().position(|known| known == name);
-        let index = known.unwrap_or_else(|| {
-            if self.sources.len() < MOST_SOURCES {
-                self.sources.push(name.to_vec());
-                self.sources.len() - 1
-            } else {
-                MOST_SOURCES
+/// The sources that are told apart, by their names.
+#[derive(Debug, Default)]
+struct Numbered(Vec<Vec<u8>>);
+
+impl Numbered {
+    fn index(&self, name: &[u8]) -> Option<usize> {
+        self.0.iter().position(|known| known == name)
+    }
+}
+
+impl Sources for Numbered {
+    fn number(&mut self, name: &[u8]) -> SourceId {
+        let index = self.index(name).unwrap_or_else(|| {
+            let name = Name::printable(&String::from_utf8_lossy(name), MOST_LETTERS);
+            let known = self.index(name.as_bytes());
+            if known.is_none() && self.0.len() < MOST_SOURCES {
+                self.0.push(name.into_bytes());
+                return self.0.len() - 1;
             }
+            known.unwrap_or(MOST_SOURCES)
         });
         SourceId(index as u16)
     }
@@ -252,6 +293,7 @@ fn begins(line: &[u8]) -> Option<Format> {
     let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
     match line.first()? {
         b'!' | b'$' | b'\\' => Some(Format::Sentences),
+        b'{' => Some(Format::Json(Box::default())),
         _ => {
             let mut cells = Cells::default();
             let table = Table::new(cells.of(str::from_utf8(line).ok()?)?)?;

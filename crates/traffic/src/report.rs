@@ -178,7 +178,8 @@ searoom_geometry::words! {
         ClassA => "class A",
         /// A ship with AIS of class B.
         ClassB => "class B",
-        /// A ship whose class of AIS is not sent: own ship, and one of which only the long-range message is heard.
+        /// A ship whose class of AIS is not sent: own ship, and one of which only the long-range message is
+        /// heard.
         Ship => "ship",
         /// A craft of a mother ship, 98….
         Craft => "craft",

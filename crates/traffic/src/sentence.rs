@@ -125,8 +125,8 @@ pub(crate) fn sentence(line: &[u8]) -> Result<Sentence<'_>, Dropped> {
 }
 
 impl<'l> Sentence<'l> {
-    /// Three letters after a talker of two, of which stations have others than AI. A maker's own sentences, which
-    /// begin with P, have none.
+    /// Three letters after a talker of two, of which stations have others than AI. A maker's own sentences,
+    /// which begin with P, have none.
     pub fn formatter(&self) -> Option<&'l [u8]> {
         match self.body {
             [b'P', ..] => None,

@@ -29,7 +29,8 @@ pub struct Settings {
     pub interval_s: [f64; 2],
     /// Age of a long-range fix that is said to be older than 5 s, seconds.
     pub latent_s: f64,
-    /// Largest age of the values of a row or of a Signal K delta, which are dated by their reception, seconds.
+    /// Largest age of the values of a row or of a Signal K delta, which are dated by their reception,
+    /// seconds.
     pub delay_s: f64,
     /// Values of one Signal K context whose times differ by no more than this are of one fix, seconds.
     pub join_s: f64,

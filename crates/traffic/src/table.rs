@@ -1,5 +1,5 @@
-//! Tables of AIS reports by the names of their columns: CSV of MarineCadastre in both of its layouts, CSV of the
-//! Danish Maritime Authority, and any other table whose columns have one of these names.
+//! Tables of AIS reports by the names of their columns: CSV of MarineCadastre in both of its layouts, CSV
+//! of the Danish Maritime Authority, and any other table whose columns have one of these names.
 
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
@@ -467,7 +467,8 @@ impl Default for Cells {
 }
 
 impl Cells {
-    /// The cells of a line without its end; `None` for a quotation mark that is not closed, or too many cells.
+    /// The cells of a line without its end; `None` for a quotation mark that is not closed, or too many
+    /// cells.
     pub fn of(&mut self, line: &str) -> Option<impl Iterator<Item = &str> + Clone> {
         self.parser.reset();
         self.text.resize(self.text.len().max(line.len() + 1), 0);

@@ -7,12 +7,16 @@ use searoom_traffic::{
     Directions, Dropped, Identity, Interval, Kind, Note, Reader, Report, Settings, Status,
 };
 
-const OLD: &str = "MMSI,BaseDateTime,LAT,LON,SOG,COG,Heading,VesselName,IMO,CallSign,VesselType,Status,Length,\
+const OLD: &str = "MMSI,BaseDateTime,LAT,LON,SOG,COG,Heading,VesselName,IMO,CallSign,VesselType,\
+                   Status,Length,\
                    Width,Draft,Cargo,TransceiverClass";
-const NEW: &str = "mmsi,base_date_time,longitude,latitude,sog,cog,heading,vessel_name,imo,call_sign,vessel_type,\
+const NEW: &str = "mmsi,base_date_time,longitude,latitude,sog,cog,heading,vessel_name,imo,call_sign,\
+                   vessel_type,\
                    status,length,width,draft,cargo,transceiver";
-const DANISH: &str = "# Timestamp,Type of mobile,MMSI,Latitude,Longitude,Navigational status,ROT,SOG,COG,Heading,\
-                      IMO,Callsign,Name,Ship type,Cargo type,Width,Length,Type of position fixing device,Draught,\
+const DANISH: &str = "# Timestamp,Type of mobile,MMSI,Latitude,Longitude,Navigational status,ROT,\
+                   SOG,COG,Heading,\
+                      IMO,Callsign,Name,Ship type,Cargo type,Width,Length,\
+                      Type of position fixing device,Draught,\
                       Destination,ETA,Data source type,A,B,C,D";
 
 /// 2022-01-03 00:00:00 UTC.
@@ -36,7 +40,8 @@ fn only(file: &str) -> Report {
 
 /// A row of the old layout: these cells, and the others as they are.
 fn old(changed: &[(&str, &str)]) -> Report {
-    let row = "366725230,2022-01-03T00:00:00,40.66947,-74.01732,12.0,090.0,92,FRANKLIN,IMO8987462,WCW8832,31,0,30,8,\
+    let row = "366725230,2022-01-03T00:00:00,40.66947,-74.01732,12.0,090.0,92,FRANKLIN,IMO8987462,\
+    WCW8832,31,0,30,8,\
                3.3,52,A";
     let cells = OLD.split(',').zip(row.split(',')).map(|(name, cell)| {
         let change = changed.iter().find(|(changed, _)| *changed == name);
@@ -52,7 +57,8 @@ fn near(a: f64, b: f64) -> bool {
 
 #[test]
 fn both_layouts_say_the_same() {
-    let new = "366725230,2022-01-03 00:00:00,-74.01732,40.66947,12.0,90.0,92.0,FRANKLIN,IMO8987462,WCW8832,31,0.0,\
+    let new = "366725230,2022-01-03 00:00:00,-74.01732,40.66947,12.0,90.0,92.0,FRANKLIN,IMO8987462,\
+    WCW8832,31,0.0,\
                30.0,8.0,3.3,52.0,A";
     let report = old(&[]);
     assert_eq!(only(&format!("\u{feff}{NEW}\r\n{new}\r\n")), report);
@@ -203,7 +209,8 @@ fn the_real_samples() {
 fn rows_of_the_danish_authority() {
     let row = |kind: &str, status: &str, sides: &str| {
         only(&format!(
-            "{DANISH}\n03/01/2022 00:00:00,{kind},219000001,56.03,12.64,{status},0.0,11.8,348.0,347,Unknown,,\"SMITH, JOHN\",\
+            "{DANISH}\n03/01/2022 00:00:00,{kind},219000001,56.03,12.64,{status},0.0,11.8,348.0,347,\
+             Unknown,,\"SMITH, JOHN\",\
              Passenger,,28,111,GPS,5.4,Unknown,,AIS,{sides}\n"
         ))
     };
