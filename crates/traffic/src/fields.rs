@@ -170,6 +170,11 @@ pub(crate) fn hull(
     hull
 }
 
+/// True for metres that may be of a ship, however wrong.
+pub(crate) fn is_length(metres: &f64) -> bool {
+    (0.0..10_000.0).contains(metres)
+}
+
 /// A switch that was forgotten makes no set smaller.
 pub(crate) fn contradiction(status: Option<Status>, fix: &Fix, notes: &mut Notes) {
     let rests = matches!(

@@ -24,6 +24,8 @@ mod counts;
 mod documents;
 mod fields;
 mod own;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod radar;
 mod reader;
 mod report;

@@ -23,7 +23,7 @@ const MOST_ROW_BYTES: usize = 65_536;
 
 /// What a stream consists of. The first line that is of one of these decides.
 #[derive(Debug, Default)]
-enum Format {
+pub(crate) enum Format {
     #[default]
     Unknown,
     Sentences,
@@ -49,10 +49,10 @@ enum Format {
 /// ```
 #[derive(Debug)]
 pub struct Reader {
-    settings: Settings,
-    format: Format,
+    pub(crate) settings: Settings,
+    pub(crate) format: Format,
     assembler: Assembler,
-    counts: Counts,
+    pub(crate) counts: Counts,
     own: Own,
     radar: Radar,
     sources: Numbered,
@@ -129,7 +129,7 @@ impl Reader {
             let most = match self.format {
                 Format::Sentences => MOST_BYTES,
                 Format::Json(_) => MOST_DOCUMENT_BYTES,
-                _ if self.begun.first() == Some(&b'{') => MOST_DOCUMENT_BYTES,
+                _ if self.begun.trim_ascii_start().first() == Some(&b'{') => MOST_DOCUMENT_BYTES,
                 _ => MOST_ROW_BYTES,
             };
             if self.begun.len() > most {
@@ -289,6 +289,9 @@ impl Sources for Numbered {
 
 /// What a stream consists of that begins with a line; `None` where the line is of nothing that is read.
 fn begins(line: &[u8]) -> Option<Format> {
+    if line.len() > MOST_ROW_BYTES && line[0] != b'{' {
+        return None;
+    }
     // a mark of the order of bytes
     let line = line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line);
     match line.first()? {

@@ -8,7 +8,7 @@ use searoom_geometry::frame::{Geographic, wrap};
 
 use crate::ais;
 use crate::counts::Dropped;
-use crate::fields::{contradiction, course_set, heading_set, hull, place, speed_set};
+use crate::fields::{contradiction, course_set, heading_set, hull, is_length, place, speed_set};
 use crate::report::{
     Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, Report, Status, VelocitySet,
 };
@@ -123,14 +123,15 @@ impl<'r> Row<'r> {
         self.0[column as usize]
     }
 
-    /// A finite number and half a step of its last digit; `None` for words such as "Unknown".
+    /// A finite number and half a step of its last digit, which is unknown with an exponent; `None` for words
+    /// such as "Unknown".
     fn step(&self, column: Column) -> Option<(f64, f64)> {
         let text = self.text(column);
         let found = decimal(text).or_else(|| {
             // 5e-05 is 5.5 m from Greenwich
             let is_short = text.len() <= 24 && text.contains(['e', 'E']);
             let number = is_short.then(|| text.parse().ok()).flatten()?;
-            Some((number, 0.0))
+            Some((number, f64::INFINITY))
         });
         found.filter(|(number, _)| number.is_finite())
     }
@@ -387,7 +388,7 @@ fn size(row: &Row, kind: Kind, settings: &Settings, notes: &mut Notes) -> Option
         notes.add(Note::NoSize);
         return Some(HullSet::unknown(bounds[0], bounds[1]));
     }
-    let metres = |column: Column| row.number(column).filter(|metres| *metres >= 0.0);
+    let metres = |column: Column| row.number(column).filter(is_length);
     let sides = [Column::Bow, Column::Stern, Column::Port, Column::Starboard].map(metres);
     if let [Some(bow), Some(stern), Some(port), Some(starboard)] = sides
         && bow + stern > 0.0

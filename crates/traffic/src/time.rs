@@ -43,9 +43,19 @@ pub(crate) fn of_short_date(text: &str) -> Option<f64> {
 }
 
 /// `2022-01-03T00:00:00`, with a blank for the `T`, decimals, and `Z`, or `03/01/2022 00:00:00` with the day
-/// first. All in UTC: a time with another offset is none.
+/// first, or a number of Unix time in seconds or its thousandths, millionths or milliardths, which are told
+/// apart by their size. All in UTC: a time with another offset is none.
 pub(crate) fn of_row(text: &str) -> Option<f64> {
     let text = text.trim().trim_end_matches('Z');
+    if (9..=19).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit()) {
+        let number: f64 = text.parse().ok()?;
+        return Some(match number {
+            1e17.. => 1e-9 * number,
+            1e14.. => 1e-6 * number,
+            1e11.. => 1e-3 * number,
+            _ => number,
+        });
+    }
     let (date, time) = text.split_once(['T', ' '])?;
     let mut time = time.splitn(3, ':');
     let of_day = clock(time.next()?, time.next()?, time.next().unwrap_or("00"))?;
@@ -105,6 +115,10 @@ mod tests {
             "2022-01-03 00:00:00",
             "2022-01-03T00:00:00.000Z",
             "03/01/2022 00:00:00",
+            "1641168000",
+            "1641168000000",
+            "1641168000000000",
+            "1641168000000000000",
         ] {
             assert_eq!(of_row(same), time, "{same}");
         }

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::{Group, Leaf, Path, mmsi_of};
 use crate::ais;
 use crate::counts::{Counts, Dropped};
-use crate::fields::{course_set, heading_set, hull, place, speed_set, turn_rate};
+use crate::fields::{course_set, heading_set, hull, is_length, place, speed_set, turn_rate};
 use crate::report::{
     Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, Status, VelocitySet,
 };
@@ -260,10 +260,6 @@ fn is_angle(angle: &f64) -> bool {
 /// True for a speed of a ship. 63 kn is what some readers make of the long-range message's "unknown".
 fn is_speed(speed: &f64) -> bool {
     (0.0..=FASTEST_MPS).contains(speed) && (speed / KNOT_MPS - 63.0).abs() > 0.01
-}
-
-fn is_length(metres: &f64) -> bool {
-    *metres >= 0.0
 }
 
 /// Step of a number of knots or degrees: a whole number may be of the long-range message.
