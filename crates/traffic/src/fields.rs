@@ -21,6 +21,7 @@ const DEGREE_NORTH_M: f64 = 60.0 * 1861.7;
 const DEGREE_EAST_M: f64 = 60.0 * 1855.4;
 
 /// The set of a position that is sent in steps, half of one in degrees; none where it is not on the earth.
+#[inline]
 pub(crate) fn place(
     at: Geographic,
     half_step_deg: f64,
@@ -61,6 +62,7 @@ pub(crate) fn speed_set(knots: Option<f64>, half_step: f64, notes: &mut Notes) -
 }
 
 /// Course and its half step in degrees, where the ship is fast enough for one.
+#[inline]
 pub(crate) fn course_set(
     course: Option<(f64, f64)>,
     speed: Interval,
@@ -95,6 +97,7 @@ pub(crate) fn heading_set(
 }
 
 /// The heading where none is sent: about the course of a ship that is fast.
+#[inline]
 pub(crate) fn without_heading(
     speed: Interval,
     course: Directions,
@@ -114,6 +117,7 @@ pub(crate) fn without_heading(
 
 /// Rate of turn from its root in 4.733 degrees a minute, starboard positive: half a step of the root each
 /// way. From 126 on it has no bound, and 127 gives the side alone.
+#[inline]
 pub(crate) fn turn_rate(root: f64) -> Interval {
     let rate = |root: f64| radians_from_deg((root / 4.733).powi(2)) / 60.0;
     let size = match root.abs() {
@@ -132,6 +136,7 @@ pub(crate) fn turn_rate(root: f64) -> Interval {
 
 /// Hull from the distances in metres from the antenna to bow, stern, port and starboard side. `bounds` are
 /// the largest length and beam where a size is not given.
+#[inline]
 pub(crate) fn hull(
     [bow, stern, port, starboard]: [f64; 4],
     [length, beam]: [f64; 2],
@@ -176,6 +181,7 @@ pub(crate) fn is_length(metres: &f64) -> bool {
 }
 
 /// A switch that was forgotten makes no set smaller.
+#[inline]
 pub(crate) fn contradiction(status: Option<Status>, fix: &Fix, notes: &mut Notes) {
     let rests = matches!(
         status,
@@ -187,12 +193,14 @@ pub(crate) fn contradiction(status: Option<Status>, fix: &Fix, notes: &mut Notes
 }
 
 /// A number of steps, to half a step each way. Speeds are not negative.
+#[inline]
 pub(crate) fn steps(number: f64, step: f64) -> Interval {
     let about = Interval::about(number * step, 0.5 * step);
     Interval::new(about.least.max(0.0), about.most)
 }
 
 /// Degrees clockwise from north with half a step, and an error in radians.
+#[inline]
 pub(crate) fn about(degrees: f64, half_step: f64, error: f64) -> Directions {
     Directions {
         middle: heading_from_course_deg(degrees),

@@ -80,7 +80,7 @@ pub(crate) struct Reception {
 
 /// The report of one of own ship's sentences; `None` for another sentence.
 pub(crate) fn report(
-    formatter: &[u8],
+    formatter: &[u8; 3],
     fields: &Fields,
     reception: Reception,
     settings: &Settings,

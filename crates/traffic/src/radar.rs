@@ -39,7 +39,7 @@ impl Radar {
     /// Reports of a sentence. False for a sentence that is not of a radar.
     pub fn read(
         &mut self,
-        formatter: &[u8],
+        formatter: &[u8; 3],
         fields: &Fields,
         reception: Reception,
         (own, settings): (&Own, &Settings),

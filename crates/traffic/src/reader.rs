@@ -154,7 +154,7 @@ impl Reader {
     }
 
     /// Reads a whole line: its reports, or that of the message that it completes.
-    pub fn line(&mut self, line: &[u8], now: f64, mut found: impl FnMut(Report)) {
+    pub fn line(&mut self, line: &[u8], now: f64, found: impl FnMut(Report)) {
         // a document that goes over many lines is indented
         let line = line.trim_ascii_end();
         let (indented, line) = (line, line.trim_ascii_start());
@@ -162,18 +162,48 @@ impl Reader {
             return;
         }
         self.counts.lines += 1;
+        let read = match self.format {
+            Format::Sentences => self.of_sentences(line, now, found),
+            _ => self.of_another(indented, now, found),
+        };
+        if let Err(why) = read {
+            self.counts.drop(why);
+        }
+    }
+
+    fn of_sentences(
+        &mut self,
+        line: &[u8],
+        now: f64,
+        found: impl FnMut(Report),
+    ) -> Result<(), Dropped> {
+        match line.len() > MOST_BYTES {
+            true => Err(Dropped::TooLong),
+            false => self.sentence(&sentence(line)?, now, found),
+        }
+    }
+
+    /// Reads a line of a table or of a document, or one that decides what the stream consists of.
+    #[inline(never)]
+    fn of_another(
+        &mut self,
+        indented: &[u8],
+        now: f64,
+        mut found: impl FnMut(Report),
+    ) -> Result<(), Dropped> {
+        let line = indented.trim_ascii_start();
         if let Format::Unknown = self.format {
             match begins(line) {
                 // the names of columns
                 Some(format @ Format::Table(_)) => {
                     self.format = format;
-                    return;
+                    return Ok(());
                 }
                 Some(format) => self.format = format,
                 None => {}
             }
         }
-        let read = match &mut self.format {
+        match &mut self.format {
             Format::Table(of) => {
                 let (table, cells) = &mut **of;
                 row(line, table, cells, &self.settings).map(|report| {
@@ -196,11 +226,7 @@ impl Reader {
                 }
                 Ok(())
             }
-            _ if line.len() > MOST_BYTES => Err(Dropped::TooLong),
-            _ => sentence(line).and_then(|sentence| self.sentence(&sentence, now, found)),
-        };
-        if let Err(why) = read {
-            self.counts.drop(why);
+            _ => self.of_sentences(line, now, found),
         }
     }
 
@@ -231,6 +257,19 @@ impl Reader {
             found(report);
             return Ok(());
         }
+        self.sensor(formatter, sentence, now, found)
+    }
+
+    /// Reads a sentence of own ship's sensors or of its radar; apart, so that AIS, of which there is most, stays
+    /// fast.
+    #[inline(never)]
+    fn sensor(
+        &mut self,
+        formatter: &[u8; 3],
+        sentence: &Sentence,
+        now: f64,
+        mut found: impl FnMut(Report),
+    ) -> Result<(), Dropped> {
         let fields = sentence.fields()?;
         let source = sentence.tag.source.map(|name| self.sources.number(name));
         let received = sentence.tag.time.unwrap_or(now);

@@ -168,7 +168,7 @@ pub enum Identity {
         number: u16,
     },
     /// A ship of a Signal K server that has no other identity.
-    Uuid(u128),
+    Uuid([u8; 16]),
 }
 
 searoom_geometry::words! {
@@ -382,6 +382,7 @@ pub struct Report {
 
 impl Report {
     /// A report that says nothing yet.
+    #[inline]
     pub(crate) fn new(
         received: f64,
         source: Option<SourceId>,

@@ -101,6 +101,7 @@ pub(crate) struct Sentence<'l> {
 }
 
 /// The sentence in a line without its line end.
+#[inline]
 pub(crate) fn sentence(line: &[u8]) -> Result<Sentence<'_>, Dropped> {
     let mut rest = line;
     let (mut found, mut ignored) = (Tag::default(), None);
@@ -127,15 +128,15 @@ pub(crate) fn sentence(line: &[u8]) -> Result<Sentence<'_>, Dropped> {
 impl<'l> Sentence<'l> {
     /// Three letters after a talker of two, of which stations have others than AI. A maker's own sentences,
     /// which begin with P, have none.
-    pub fn formatter(&self) -> Option<&'l [u8]> {
-        match self.body {
-            [b'P', ..] => None,
-            [_, _, formatter @ ..] if formatter.get(3) == Some(&b',') => Some(&formatter[..3]),
-            _ => None,
-        }
+    #[inline]
+    pub fn formatter(&self) -> Option<&'l [u8; 3]> {
+        let (talker, rest) = self.body.split_first_chunk::<2>()?;
+        let (formatter, fields) = rest.split_first_chunk::<3>()?;
+        (talker[0] != b'P' && fields.first() == Some(&b',')).then_some(formatter)
     }
 
     /// The part of a message of AIS.
+    #[inline]
     pub fn part(&self, is_own: bool) -> Result<Part<'l>, Dropped> {
         let mut fields = self.body.split(|byte| *byte == b',').skip(1);
         let digit = |field: Option<&[u8]>| match field {

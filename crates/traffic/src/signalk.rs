@@ -344,7 +344,7 @@ fn identity(id: &str) -> Option<Identity> {
     let digits: String = uuid.chars().filter(|digit| *digit != '-').collect();
     let is_uuid = digits.len() == 32 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
     let uuid = u128::from_str_radix(&digits, 16).ok().filter(|_| is_uuid)?;
-    Some(Identity::Uuid(uuid))
+    Some(Identity::Uuid(uuid.to_be_bytes()))
 }
 
 fn mmsi_of(digits: &str) -> Option<u32> {

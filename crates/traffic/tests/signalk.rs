@@ -296,12 +296,10 @@ fn values_of_one_context_join_within_a_few_seconds() {
 fn own_ship_has_one_identity() {
     let speed = [("navigation.speedOverGround", json!(5.0))];
     let mut feed = Feed::new();
+    const UUID: u128 = 0xc0d7_9334_4e25_4245_8892_54e8_ccc8_021d;
     let own = "vessels.urn:mrn:signalk:uuid:c0d79334-4e25-4245-8892-54e8ccc8021d";
     let before = feed.delta(own, TIME, &speed);
-    assert_eq!(
-        before[0].identity,
-        Identity::Uuid(0xc0d7_9334_4e25_4245_8892_54e8_ccc8_021d)
-    );
+    assert_eq!(before[0].identity, Identity::Uuid(UUID.to_be_bytes()));
     let hello =
         json!({"name": "signalk-server", "version": "2.19.0", "self": own, "roles": ["main"]});
     assert!(feed.text(&format!("{hello}\n")).is_empty());
