@@ -78,15 +78,9 @@ pub(crate) fn report(message: &Message, settings: &Settings) -> Result<Report, D
     }
     let mmsi = bits.unsigned(8, 30);
     let identity = Identity::Mmsi(mmsi);
-    let mut report = Report {
-        is_own: message.is_own,
-        ..Report::new(
-            message.received,
-            message.source,
-            identity,
-            kind(number, mmsi),
-        )
-    };
+    let kind = kind(number, mmsi);
+    let mut report = Report::new(message.received, message.source, identity, kind);
+    report.is_own = message.is_own;
     let read = Reading {
         bits,
         settings,
