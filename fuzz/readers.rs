@@ -17,6 +17,7 @@ use searoom::report::printable;
 use searoom::scenario::Scenario;
 use searoom::scenario::import::{Assumed, Contents};
 use searoom::verification::{is_simulation, verify, verify_simulations};
+use searoom_traffic::{Report, Settings};
 
 /// Gives bytes to one reader, and panics if it breaks its promise.
 pub type Reader = fn(&[u8]);
@@ -31,6 +32,7 @@ pub const READERS: &[(&str, Reader)] = &[
     ("recording", recording),
     ("route", route),
     ("scenario", scenario),
+    ("traffic", traffic),
 ];
 
 /// Gives the bytes to a reader, and panics if it breaks its promise.
@@ -195,6 +197,58 @@ fn recording(bytes: &[u8]) {
             }
         }
         Err(error) => is_told(&error.to_string()),
+    }
+}
+
+/// Sentences, rows or documents of traffic: sound sets, printable names, every line counted, and the same
+/// reports when the stream comes in pieces. Bytes that are cut off from a line that is too long may be read
+/// differently.
+fn traffic(bytes: &[u8]) {
+    let read = |piece: usize| {
+        let mut reader = searoom_traffic::Reader::new(Settings::default());
+        let mut reports = Vec::new();
+        for bytes in bytes.chunks(piece) {
+            reader.bytes(bytes, 1.7e9, |report| reports.push(report));
+        }
+        reader.finish(1.7e9, |report| reports.push(report));
+        if let Some(missing) = reader.missing_column() {
+            is_told(&missing.to_string());
+        }
+        assert_eq!(reader.counts().reports, reports.len() as u64);
+        (reports, reader.counts().clone())
+    };
+    let whole = read(bytes.len().max(1));
+    whole.0.iter().for_each(is_sound);
+    if bytes
+        .split(|byte| *byte == b'\n')
+        .all(|line| line.len() <= 512)
+    {
+        assert_eq!(whole, read(7));
+    }
+}
+
+fn is_sound(report: &Report) {
+    for name in [report.name, report.call_sign].into_iter().flatten() {
+        is_told(name.as_str());
+    }
+    if let Some(fix) = report.fix {
+        let speed = fix.velocity.speed;
+        assert!(
+            0.0 <= speed.least && speed.least <= speed.most,
+            "{report:?}"
+        );
+        assert!(fix.time.least <= fix.time.most, "{report:?}");
+        assert!(
+            fix.position
+                .is_none_or(|set| set.at.is_on_earth() && set.radius_m >= 0.0)
+        );
+        assert!(!fix.velocity.outer(13.0).vertices().is_empty());
+    }
+    if let Some(hull) = report.hull {
+        assert!(
+            hull.reach() >= 0.0 && hull.reach().is_finite(),
+            "{report:?}"
+        );
     }
 }
 

@@ -19,6 +19,7 @@ pub struct Feed {
     /// Reports after it are left out.
     until: f64,
     left_out: u64,
+    undated: u64,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -55,33 +56,50 @@ impl Feed {
             },
             until,
             left_out: 0,
+            undated: 0,
         }
     }
 
     /// Reads the next bytes of a file, dated by their own times. Lines without one are taken to be of the time
     /// of the line before.
     pub fn recorded(&mut self, source: usize, bytes: &[u8]) {
-        let now = if self.clock.time.is_nan() {
-            0.0
-        } else {
-            self.clock.time
+        for line in bytes.split_inclusive(|byte| *byte == b'\n') {
+            self.recorded_line(source, line);
+        }
+    }
+
+    fn recorded_line(&mut self, source: usize, line: &[u8]) {
+        // no report of real traffic is of this time
+        const UNDATED: f64 = 0.0;
+        let now = match self.clock.time.is_nan() {
+            true => UNDATED,
+            false => self.clock.time,
         };
-        let (picture, clock, left_out, until) = (
-            &mut self.picture,
-            &mut self.clock,
-            &mut self.left_out,
-            self.until,
-        );
+        let Self {
+            picture,
+            clock,
+            left_out,
+            undated,
+            until,
+            ..
+        } = self;
         let Some(reader) = self.readers.get_mut(source) else {
             return;
         };
-        reader.bytes(bytes, now, |report| {
-            if report.received > until {
+        reader.bytes(line, now, |report| {
+            // own ship's receiver has a clock of its own, where the lines have none
+            let own = report
+                .fix
+                .filter(|_| report.is_own && report.received == now);
+            let time = own.map_or(report.received, |fix| fix.time.most.max(report.received));
+            if time == UNDATED {
+                *undated += 1;
+            } else if time > *until {
                 *left_out += 1;
-                return;
+            } else {
+                clock.hear(time);
+                picture.take(&report, clock.time);
             }
-            clock.hear(report.received);
-            picture.take(&report, clock.time);
         });
     }
 
@@ -127,6 +145,7 @@ impl Feed {
         let [forgotten, crowded_out] = self.picture.forgotten();
         let more = [
             (self.left_out, "reports after the time that was asked for"),
+            (self.undated, "reports before any time was known"),
             (forgotten, "ships forgotten after a long silence"),
             (crowded_out, "ships forgotten because there were too many"),
         ];

@@ -21,7 +21,7 @@ fn ours(rounds: usize) -> usize {
             black_box(&report);
             reports += 1;
         });
-        reports += usize::from(reader.finish(0.0).is_some());
+        reader.finish(0.0, |_| reports += 1);
     }
     reports
 }

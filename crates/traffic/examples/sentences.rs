@@ -25,7 +25,7 @@ fn main() -> std::io::Result<()> {
     let mut reader = Reader::new(Settings::default());
     let (mut reports, begun) = (Vec::new(), Instant::now());
     reader.bytes(&file, 0.0, |report| reports.push(report));
-    reports.extend(reader.finish(0.0));
+    reader.finish(0.0, |report| reports.push(report));
     let seconds = begun.elapsed().as_secs_f64();
     for report in reports.iter().take(MOST) {
         let identity = report.identity;

@@ -3,75 +3,19 @@
 //! Each code that stands for "unknown" or for "or more" widens a set here, with a [`Note`]. The table is in
 //! docs/reference/traffic.md.
 
-use std::f64::consts::PI;
-
-use searoom_geometry::frame::{
-    Geographic, KNOT_MPS, NAUTICAL_MILE_M, Vector, heading_from_course_deg, radians_from_deg,
-};
+use searoom_geometry::frame::{Geographic, KNOT_MPS};
 
 use crate::assembly::Message;
 use crate::bits::Bits;
 use crate::counts::Dropped;
+use crate::fields::{
+    about, contradiction, course_set, hull, place, steps, turn_rate, without_heading,
+};
 use crate::report::{
     Directions, Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, PositionSet, Report,
     Status, VelocitySet,
 };
-
-/// What a report does not say.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// Radius of a fix that says it is better than 10 m, metres.
-    pub accurate_m: f64,
-    /// Radius of another one, metres.
-    pub inaccurate_m: f64,
-    /// Radius of a place that was not measured, metres.
-    pub not_measured_m: f64,
-    /// Speed below which a course is noise, m/s.
-    pub least_course_mps: f64,
-    /// Error of a course beyond its step, rad.
-    pub course_error: f64,
-    /// Error of a heading beyond its step, rad.
-    pub heading_error: f64,
-    /// Speed from which the course stands for an unknown heading, m/s, and within what, rad.
-    pub heading_from_mps: f64,
-    /// See `heading_from_mps`.
-    pub heading_from_course: f64,
-    /// Largest length and beam of a ship of class A, metres.
-    pub class_a_m: [f64; 2],
-    /// Largest length and beam of a ship of class B, metres.
-    pub class_b_m: [f64; 2],
-    /// Time between two reports of classes A and B, seconds: the age of a fix without a time stamp.
-    pub interval_s: [f64; 2],
-    /// Age of a long-range fix that is said to be older than 5 s, seconds.
-    pub latent_s: f64,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            accurate_m: 10.0,
-            inaccurate_m: 50.0,
-            not_measured_m: 0.5 * NAUTICAL_MILE_M,
-            least_course_mps: KNOT_MPS,
-            course_error: radians_from_deg(2.0),
-            heading_error: radians_from_deg(2.0),
-            heading_from_mps: 5.0 * KNOT_MPS,
-            heading_from_course: radians_from_deg(15.0),
-            class_a_m: [500.0, 130.0],
-            class_b_m: [50.0, 15.0],
-            interval_s: [10.0, 30.0],
-            latent_s: 60.0,
-        }
-    }
-}
-
-/// Longest ship, metres: more is typed in wrongly.
-const LONGEST_M: f64 = 500.0;
-
-/// Metres for a minute of latitude, and for one of longitude at the equator. Each is the largest on WGS 84, so
-/// that half a step is not too small.
-const MINUTE_NORTH_M: f64 = 1861.7;
-const MINUTE_EAST_M: f64 = 1855.4;
+use crate::settings::Settings;
 
 /// How far the clock of a station may be behind, seconds.
 const CLOCK_S: f64 = 2.0;
@@ -133,21 +77,10 @@ pub(crate) fn report(message: &Message, settings: &Settings) -> Result<Report, D
         return Err(Dropped::TooShort);
     }
     let mmsi = bits.unsigned(8, 30);
-    let mut report = Report {
-        received: message.received,
-        source: message.source,
-        identity: Identity::Mmsi(mmsi),
-        kind: kind(number, mmsi),
-        is_own: message.is_own,
-        fix: None,
-        hull: None,
-        status: None,
-        name: None,
-        call_sign: None,
-        type_code: None,
-        mother_ship: None,
-        notes: Notes::default(),
-    };
+    let identity = Identity::Mmsi(mmsi);
+    let kind = kind(number, mmsi);
+    let mut report = Report::new(message.received, message.source, identity, kind);
+    report.is_own = message.is_own;
     let read = Reading {
         bits,
         settings,
@@ -246,7 +179,7 @@ fn kind(number: u32, mmsi: u32) -> Kind {
     }
 }
 
-fn status(code: u32, mmsi: u32) -> Option<Status> {
+pub(crate) fn status(code: u32, mmsi: u32) -> Option<Status> {
     let is_distress = matches!(mmsi / 1_000_000, 970 | 972 | 974);
     Some(match code {
         0 => Status::UnderWay,
@@ -264,17 +197,6 @@ fn status(code: u32, mmsi: u32) -> Option<Status> {
         15 if is_distress => Status::DistressTest,
         _ => return None,
     })
-}
-
-/// A switch that was forgotten makes no set smaller.
-fn contradiction(status: Option<Status>, fix: &Fix, notes: &mut Notes) {
-    let rests = matches!(
-        status,
-        Some(Status::Anchored | Status::Moored | Status::Aground)
-    );
-    if rests && fix.velocity.speed.least > KNOT_MPS {
-        notes.add(Note::StatusContradictsSpeed);
-    }
 }
 
 /// The fields of one message.
@@ -310,10 +232,10 @@ impl Reading<'_> {
             code => steps(f64::from(code), layout.speed_step * KNOT_MPS),
         };
         let course = (course_code < 3600).then(|| (0.1 * f64::from(course_code), 0.05));
-        let course = self.course(course, speed, notes);
+        let course = course_set(course, speed, self.settings, notes);
         let heading = match heading_code {
             Some(code @ ..360) => about(f64::from(code), 0.5, self.settings.heading_error),
-            _ => self.without_heading(speed, course, notes),
+            _ => without_heading(speed, course, self.settings, notes),
         };
         Fix {
             time,
@@ -363,9 +285,9 @@ impl Reading<'_> {
             false => 5.0,
         };
         let (longitude, latitude) = (bits.signed(44, 18), bits.signed(62, 17));
-        let position = self.place(
-            (f64::from(longitude), f64::from(latitude)),
-            10.0,
+        let position = place(
+            Geographic::new(f64::from(latitude) / 600.0, f64::from(longitude) / 600.0),
+            0.5 / 600.0,
             self.radius(bits.flag(38), true),
             notes,
         );
@@ -378,18 +300,18 @@ impl Reading<'_> {
             code => steps(f64::from(code), KNOT_MPS),
         };
         let course = (course_code < 360).then(|| (f64::from(course_code), 0.5));
-        let course = self.course(course, speed, notes);
+        let course = course_set(course, speed, self.settings, notes);
         Fix {
             time: Interval::new(self.received - age, self.received),
             position,
             velocity: VelocitySet { speed, course },
-            heading: self.without_heading(speed, course, notes),
+            heading: without_heading(speed, course, self.settings, notes),
             turn_rate: None,
         }
     }
 
-    /// When the fix was taken, and whether it was measured: in the minute that is nearest to the reception, or
-    /// in the one before where that is in the future.
+    /// When the fix was taken, and whether it was measured: in the minute that is nearest to the reception,
+    /// or in the one before where that is in the future.
     fn time(&self, from: usize, notes: &mut Notes) -> (Interval, bool) {
         let second = self.bits.unsigned(from, 6);
         if second < 60 {
@@ -443,142 +365,24 @@ impl Reading<'_> {
     ) -> Option<PositionSet> {
         let bits = self.bits;
         let (longitude, latitude) = (bits.signed(from, 28), bits.signed(from + 28, 27));
-        let counts = (f64::from(longitude), f64::from(latitude));
+        const PARTS: f64 = 600_000.0;
+        let at = Geographic::new(f64::from(latitude) / PARTS, f64::from(longitude) / PARTS);
         let radius = self.radius(bits.flag(accuracy), is_measured);
-        self.place(counts, 10_000.0, radius, notes)
-    }
-
-    /// A position in parts of a minute; none where one of them is not on the earth.
-    fn place(
-        &self,
-        (longitude, latitude): (f64, f64),
-        parts: f64,
-        radius_m: f64,
-        notes: &mut Notes,
-    ) -> Option<PositionSet> {
-        let at = Geographic::new(latitude / (60.0 * parts), longitude / (60.0 * parts));
-        if !at.is_on_earth() {
-            notes.add(Note::NoPosition);
-            return None;
-        }
-        // a degree of longitude is longest at the edge toward the equator
-        let edge = (at.lat_deg.abs() - 0.5 / (60.0 * parts)).max(0.0);
-        let east = MINUTE_EAST_M * radians_from_deg(edge).cos().max(0.0);
-        Some(PositionSet {
-            at,
-            half_cell_m: Vector::new(east, MINUTE_NORTH_M) * (0.5 / parts),
-            radius_m,
-        })
-    }
-
-    /// A course in degrees with half a step, where the ship is fast enough for one.
-    fn course(&self, course: Option<(f64, f64)>, speed: Interval, notes: &mut Notes) -> Directions {
-        let Some((degrees, half_step)) = course else {
-            notes.add(Note::NoCourse);
-            return Directions::ALL;
-        };
-        if speed.least < self.settings.least_course_mps {
-            if speed.most.is_finite() {
-                notes.add(Note::SlowCourse);
-            }
-            return Directions::ALL;
-        }
-        about(degrees, half_step, self.settings.course_error)
-    }
-
-    /// The heading where none is sent: about the course of a ship that is fast.
-    fn without_heading(
-        &self,
-        speed: Interval,
-        course: Directions,
-        notes: &mut Notes,
-    ) -> Directions {
-        notes.add(Note::NoHeading);
-        if speed.least < self.settings.heading_from_mps || course.half >= PI {
-            return Directions::ALL;
-        }
-        notes.add(Note::HeadingFromCourse);
-        Directions {
-            half: (course.half + self.settings.heading_from_course).min(PI),
-            ..course
-        }
+        place(at, 0.5 / PARTS, radius, notes)
     }
 
     /// Rate of turn from its root in 4.733 degrees a minute, starboard positive.
     fn turn_rate(&self, from: usize) -> Option<Interval> {
         let code = self.bits.signed(from, 8);
-        let rate = |root: f64| radians_from_deg((root / 4.733).powi(2)) / 60.0;
-        let root = f64::from(code.abs());
-        let size = match code.abs() {
-            128 => return None,
-            // to this side at more than 5° in 30 s
-            127 => Interval::new(radians_from_deg(10.0) / 60.0, f64::INFINITY),
-            126 => Interval::new(rate(125.5), f64::INFINITY),
-            0 => return Some(Interval::new(-rate(0.5), rate(0.5))),
-            _ => Interval::new(rate(root - 0.5), rate(root + 0.5)),
-        };
-        // to starboard is negative in the plane
-        Some(match code > 0 {
-            true => Interval::new(-size.most, -size.least),
-            false => size,
-        })
+        (code != -128).then(|| turn_rate(f64::from(code)))
     }
 
     /// Distances from the antenna to bow, stern, port and starboard side.
-    fn hull(&self, from: usize, [length, beam]: [f64; 2], notes: &mut Notes) -> HullSet {
+    fn hull(&self, from: usize, bounds: [f64; 2], notes: &mut Notes) -> HullSet {
         let metres = |from: usize, bits: usize| f64::from(self.bits.unsigned(from, bits));
         let [bow, stern] = [metres(from, 9), metres(from + 9, 9)];
         let [port, starboard] = [metres(from + 18, 6), metres(from + 24, 6)];
-        let (long, wide) = (bow + stern, port + starboard);
-        if long == 0.0 || wide == 0.0 {
-            notes.add(Note::NoSize);
-            return HullSet::unknown(length.max(long), beam.max(wide));
-        }
-        if long < wide || long > LONGEST_M && bow < 511.0 && stern < 511.0 {
-            notes.add(Note::WrongSize);
-            let most = long.max(wide) + 1.0;
-            return HullSet::unknown(most, most);
-        }
-        // a code that means "or more" reaches as far as any ship
-        let [longest, widest] = self.settings.class_a_m;
-        let mut side = |code: f64, highest: f64, largest: f64| match code >= highest {
-            true => {
-                notes.add(Note::SizeOrMore);
-                Interval::new(code - 0.5, largest.max(code))
-            }
-            false => Interval::new((code - 0.5).max(0.0), code + 0.5),
-        };
-        let sum = |a: Interval, b: Interval| Interval::new(a.least + b.least, a.most + b.most);
-        let ahead = side(bow, 511.0, longest.max(511.0));
-        let astern = side(stern, 511.0, longest.max(511.0));
-        let to_port = side(port, 63.0, widest);
-        let to_starboard = side(starboard, 63.0, widest);
-        if bow == 0.0 && port == 0.0 {
-            notes.add(Note::NoAntenna);
-            return HullSet::anywhere(astern, to_starboard);
-        }
-        HullSet {
-            length: sum(ahead, astern),
-            beam: sum(to_port, to_starboard),
-            ahead,
-            astern,
-            port: to_port,
-            starboard: to_starboard,
-        }
-    }
-}
-
-/// A number of steps, to half a step each way. Speeds are not negative.
-fn steps(number: f64, step: f64) -> Interval {
-    let about = Interval::about(number * step, 0.5 * step);
-    Interval::new(about.least.max(0.0), about.most)
-}
-
-/// Degrees clockwise from north with half a step, and an error in radians.
-fn about(degrees: f64, half_step: f64, error: f64) -> Directions {
-    Directions {
-        middle: heading_from_course_deg(degrees),
-        half: radians_from_deg(half_step) + error,
+        hull([bow, stern, port, starboard], bounds, self.settings, notes)
     }
 }
 

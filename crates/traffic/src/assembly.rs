@@ -169,8 +169,8 @@ impl Assembler {
         })
     }
 
-    /// The message that a part belongs to. Where a part that lacks a source or a channel may be of several, it
-    /// is of none.
+    /// The message that a part belongs to. Where a part that lacks a source or a channel may be of several,
+    /// it is of none.
     fn fitting(&self, part: &Part, source: Option<SourceId>) -> Option<usize> {
         let is_exact = |w: &&Waiting| w.source == source && w.channel == part.channel;
         let index = |of: &Waiting| self.waiting.iter().position(|w| std::ptr::eq(w, of));

@@ -33,8 +33,8 @@ impl Bits {
         }
     }
 
-    /// Adds the bits of a part. False for a character that stands for no six bits, or more bits than a message
-    /// has.
+    /// Adds the bits of a part. False for a character that stands for no six bits, or more bits than a
+    /// message has.
     pub fn push(&mut self, armoured: &[u8], fill: u8) -> bool {
         let from = self.len;
         if from + 6 * armoured.len() > MOST_BITS {

@@ -13,7 +13,7 @@ searoom_geometry::words! {
         CheckSum => "wrong or missing check sums",
         /// That of a tag block.
         TagCheckSum => "tag blocks with a wrong check sum, which are ignored",
-        /// A sentence that is not VDM or VDO.
+        /// A sentence that is not read.
         OtherSentence => "sentences of another kind",
         /// Fields that are missing or no numbers.
         Fields => "sentences with wrong fields",
@@ -27,6 +27,34 @@ searoom_geometry::words! {
         TooShort => "messages that are too short",
         /// A message that has no ship's position or size.
         OtherMessage => "messages of another kind",
+        /// HDG, HDM and Signal K's `headingMagnetic`: without the variation they are no true heading.
+        Magnetic => "magnetic headings, which are not used",
+        /// Status L.
+        Lost => "radar targets that are lost",
+        /// Own ship's position is too old, or not there.
+        NoOwnPosition => "radar targets without own position",
+        /// A relative bearing, and own ship's heading is too old or not there.
+        NoOwnHeading => "radar targets without own heading",
+        /// More radar targets have names than are kept.
+        TooManyNames => "names of radar targets while too many were kept",
+        /// Cells that are missing, or no identity or no time.
+        Row => "rows with wrong cells",
+        /// The same identity, time and place.
+        Again => "rows that were there before",
+        /// The table lacks a column that is needed.
+        NoColumn => "rows of a table that lacks a column",
+        /// No JSON, or cut off.
+        Document => "documents that are broken",
+        /// Neither a delta nor a full model of Signal K.
+        OtherDocument => "documents of another kind",
+        /// Neither own ship, nor a number, nor a UUID.
+        Context => "deltas of another context",
+        /// Values whose paths are not used.
+        Path => "values of other paths",
+        /// A text for a number, or nothing that a number can be.
+        Value => "values of a wrong type",
+        /// More contexts of Signal K than are kept; the others begin anew.
+        TooManyContexts => "contexts that were silent while too many were kept",
     }
 }
 

@@ -160,7 +160,7 @@ impl HullSet {
 pub struct Fix {
     /// When the fix was taken, seconds of Unix time.
     pub time: Interval,
-    /// Unknown where a ship is heard without a place.
+    /// Unknown where a ship is heard without a place ([`Note::NoPosition`]), and where a message has none.
     pub position: Option<PositionSet>,
     pub velocity: VelocitySet,
     pub heading: Directions,
@@ -173,12 +173,27 @@ pub struct Fix {
 pub enum Identity {
     /// Maritime mobile service identity. Two ships may have the same.
     Mmsi(u32),
+    /// Own ship, by its own sensors.
+    Own,
+    /// A target of a radar by its number, which the radar uses again for others.
+    Radar {
+        source: Option<SourceId>,
+        number: u16,
+    },
+    /// A ship of a Signal K server that has no other identity.
+    Uuid([u8; 16]),
 }
 
 impl fmt::Display for Identity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Mmsi(number) => write!(f, "MMSI {number:09}"),
+            Self::Own => f.write_str("own ship"),
+            Self::Radar { number, .. } => write!(f, "radar target {number}"),
+            Self::Uuid(bytes) => {
+                f.write_str("UUID ")?;
+                bytes.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
+            }
         }
     }
 }
@@ -190,7 +205,8 @@ searoom_geometry::words! {
         ClassA => "class A",
         /// A ship with AIS of class B.
         ClassB => "class B",
-        /// A ship of which only the long-range message is heard.
+        /// A ship whose class of AIS is not sent: own ship, and one of which only the long-range message is
+        /// heard.
         Ship => "ship",
         /// A craft of a mother ship, 98….
         Craft => "craft",
@@ -204,23 +220,58 @@ searoom_geometry::words! {
         Mark => "mark",
         /// A mark that is sent where nothing lies.
         VirtualMark => "virtual mark",
+        /// An echo that own ship's radar tracks.
+        Radar => "radar target",
     }
 }
 
 /// A source of sentences, by its number in a [`Reader`](crate::Reader).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SourceId(pub(crate) u16);
 
-/// A name or call sign of at most 20 characters.
+/// A name or call sign of at most 20 bytes, without control characters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Name {
     pub(crate) letters: [u8; 20],
     pub(crate) length: u8,
 }
 
+/// True for characters that have no form of their own, and change that of others.
+fn is_hidden(letter: char) -> bool {
+    letter.is_control()
+        || matches!(
+            letter,
+            '\u{ad}' | '\u{61c}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}'
+        )
+        || matches!(letter, '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}')
+        || matches!(letter, '\u{e0000}'..='\u{e007f}')
+}
+
 impl Name {
+    /// The beginning of a text, as far as it has room; none where nothing can be seen of it.
+    pub(crate) fn of(text: &str) -> Option<Self> {
+        let mut name = Self {
+            letters: [0; 20],
+            length: 0,
+        };
+        for letter in text.trim().chars().filter(|letter| !is_hidden(*letter)) {
+            let from = usize::from(name.length);
+            let Some(room) = name.letters[from..].get_mut(..letter.len_utf8()) else {
+                break;
+            };
+            letter.encode_utf8(room);
+            name.length += letter.len_utf8() as u8;
+        }
+        (!name.as_str().trim().is_empty()).then_some(name)
+    }
+
+    /// The beginning of a text without what cannot be seen, for messages.
+    pub(crate) fn printable(text: &str, most: usize) -> String {
+        let seen = text.trim().chars().filter(|letter| !is_hidden(*letter));
+        seen.take(most).collect()
+    }
+
     pub fn as_str(&self) -> &str {
-        // the letters are from AIS's table of 64, which is ASCII without control characters
         str::from_utf8(&self.letters[..usize::from(self.length)]).unwrap_or_default()
     }
 }
@@ -266,6 +317,16 @@ searoom_geometry::words! {
         OffPosition => "off its position",
         /// The report is as short as real units send it.
         Short => "the message is short",
+        /// Modes and qualities of a simulator: neither a place nor a heading.
+        Simulated => "from a simulator",
+        /// Modes E and M of THS.
+        HeadingNotMeasured => "the heading is typed in or estimated, and wider",
+        /// Status Q: the radar does not know its motion yet.
+        Acquiring => "the radar is acquiring it",
+        /// Course and speed of a radar target that are relative, nobody says to what.
+        RelativeCourse => "course and speed are relative to own heading or to own motion",
+        /// Descriptions differ in which distance is that to port.
+        Sides => "port and starboard of the antenna may be exchanged",
     }
 }
 
@@ -304,9 +365,9 @@ pub struct Report {
     pub source: Option<SourceId>,
     pub identity: Identity,
     pub kind: Kind,
-    /// True for own ship's own message (VDO).
+    /// True for own ship's own message: VDO, a sentence of its sensors, or Signal K's own ship.
     pub is_own: bool,
-    /// Of a message with a position.
+    /// Of a message with a position, velocity or heading. What the message has no field for is unknown here.
     pub fix: Option<Fix>,
     /// Of a message with a size.
     pub hull: Option<HullSet>,
@@ -318,4 +379,31 @@ pub struct Report {
     /// Of a craft that says which ship it belongs to.
     pub mother_ship: Option<Identity>,
     pub notes: Notes,
+}
+
+impl Report {
+    /// A report that says nothing yet.
+    #[inline]
+    pub(crate) fn new(
+        received: f64,
+        source: Option<SourceId>,
+        identity: Identity,
+        kind: Kind,
+    ) -> Self {
+        Self {
+            received,
+            source,
+            identity,
+            kind,
+            is_own: false,
+            fix: None,
+            hull: None,
+            status: None,
+            name: None,
+            call_sign: None,
+            type_code: None,
+            mother_ship: None,
+            notes: Notes::default(),
+        }
+    }
 }

@@ -90,9 +90,19 @@ fn tag(block: &[u8]) -> Option<Tag<'_>> {
     Some(tag)
 }
 
-/// The part of a message in a line without its line end, and what of the line was ignored: a tag block with a
-/// wrong check sum is as none.
-pub(crate) fn part(line: &[u8]) -> Result<(Part<'_>, Option<Dropped>), Dropped> {
+/// A sentence whose check sum is right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sentence<'l> {
+    pub tag: Tag<'l>,
+    /// What stands between the first character and the check sum.
+    body: &'l [u8],
+    /// What of the line was ignored: a tag block with a wrong check sum is as none.
+    pub ignored: Option<Dropped>,
+}
+
+/// The sentence in a line without its line end.
+#[inline]
+pub(crate) fn sentence(line: &[u8]) -> Result<Sentence<'_>, Dropped> {
     let mut rest = line;
     let (mut found, mut ignored) = (Tag::default(), None);
     if let [b'\\', after @ ..] = rest {
@@ -108,37 +118,121 @@ pub(crate) fn part(line: &[u8]) -> Result<(Part<'_>, Option<Dropped>), Dropped> 
         return Err(Dropped::NoSentence);
     };
     let body = checked(rest.trim_ascii_end()).ok_or(Dropped::CheckSum)?;
-    let mut fields = body.split(|byte| *byte == b',');
-    // a talker of two letters, of which stations have others than AI
-    let is_own = match fields.next() {
-        Some([_, _, b'V', b'D', b'M']) => false,
-        Some([_, _, b'V', b'D', b'O']) => true,
-        _ => return Err(Dropped::OtherSentence),
-    };
-    let digit = |field: Option<&[u8]>| match field {
-        Some([byte @ b'0'..=b'9']) => Some(byte - b'0'),
-        _ => None,
-    };
-    let (count, number) = (digit(fields.next()), digit(fields.next()));
-    let sequence = digit(fields.next());
-    let channel = fields.next().and_then(|field| field.first().copied());
-    let (armoured, fill) = (fields.next(), digit(fields.next()));
-    match (count, number, armoured, fill) {
-        (Some(count @ 1..), Some(number @ 1..), Some(armoured), Some(fill @ 0..=5))
-            if number <= count =>
-        {
-            let part = Part {
-                tag: found,
-                is_own,
-                count,
-                number,
-                sequence,
-                channel,
-                armoured,
-                fill,
-            };
-            Ok((part, ignored))
-        }
-        _ => Err(Dropped::Fields),
+    Ok(Sentence {
+        tag: found,
+        body,
+        ignored,
+    })
+}
+
+impl<'l> Sentence<'l> {
+    /// Three letters after a talker of two, of which stations have others than AI. A maker's own sentences,
+    /// which begin with P, have none.
+    #[inline]
+    pub fn formatter(&self) -> Option<&'l [u8; 3]> {
+        let (talker, rest) = self.body.split_first_chunk::<2>()?;
+        let (formatter, fields) = rest.split_first_chunk::<3>()?;
+        (talker[0] != b'P' && fields.first() == Some(&b',')).then_some(formatter)
     }
+
+    /// The part of a message of AIS.
+    #[inline]
+    pub fn part(&self, is_own: bool) -> Result<Part<'l>, Dropped> {
+        let mut fields = self.body.split(|byte| *byte == b',').skip(1);
+        let digit = |field: Option<&[u8]>| match field {
+            Some([byte @ b'0'..=b'9']) => Some(byte - b'0'),
+            _ => None,
+        };
+        let (count, number) = (digit(fields.next()), digit(fields.next()));
+        let sequence = digit(fields.next());
+        let channel = fields.next().and_then(|field| field.first().copied());
+        let (armoured, fill) = (fields.next(), digit(fields.next()));
+        match (count, number, armoured, fill) {
+            (Some(count @ 1..), Some(number @ 1..), Some(armoured), Some(fill @ 0..=5))
+                if number <= count =>
+            {
+                Ok(Part {
+                    tag: self.tag,
+                    is_own,
+                    count,
+                    number,
+                    sequence,
+                    channel,
+                    armoured,
+                    fill,
+                })
+            }
+            _ => Err(Dropped::Fields),
+        }
+    }
+
+    pub fn fields(&self) -> Result<Fields<'l>, Dropped> {
+        let mut fields = [&[][..]; MOST_FIELDS];
+        let mut len = 0;
+        for field in self.body.split(|byte| *byte == b',') {
+            *fields.get_mut(len).ok_or(Dropped::Fields)? = field.trim_ascii();
+            len += 1;
+        }
+        Ok(Fields { fields, len })
+    }
+}
+
+/// Most fields of a sentence: TLB has pairs of a number and a name in 82 bytes.
+const MOST_FIELDS: usize = 48;
+
+/// The fields of a sentence, from 1 on. Those that are not there are empty.
+pub(crate) struct Fields<'l> {
+    fields: [&'l [u8]; MOST_FIELDS],
+    len: usize,
+}
+
+impl<'l> Fields<'l> {
+    /// Number of fields, with the sentence's name.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    pub fn bytes(&self, at: usize) -> &'l [u8] {
+        self.fields.get(at).copied().unwrap_or_default()
+    }
+
+    /// A question mark for what is no text.
+    pub fn text(&self, at: usize) -> &'l str {
+        str::from_utf8(self.bytes(at)).unwrap_or("?")
+    }
+
+    pub fn letter(&self, at: usize) -> Option<u8> {
+        match self.bytes(at) {
+            [letter] => Some(*letter),
+            [] => None,
+            _ => Some(b'?'),
+        }
+    }
+
+    /// `None` for an empty field.
+    pub fn number(&self, at: usize) -> Result<Option<f64>, Dropped> {
+        Ok(self.step(at)?.map(|(number, _)| number))
+    }
+
+    /// A number and half a step of its last digit; `None` for an empty field.
+    pub fn step(&self, at: usize) -> Result<Option<(f64, f64)>, Dropped> {
+        let text = self.text(at);
+        match text.is_empty() {
+            true => Ok(None),
+            false => decimal(text).map(Some).ok_or(Dropped::Fields),
+        }
+    }
+}
+
+/// A number without an exponent, and half a step of its last digit.
+pub(crate) fn decimal(text: &str) -> Option<(f64, f64)> {
+    let is_plain = |byte: u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'+');
+    if text.len() > 24 || !text.bytes().all(is_plain) {
+        return None;
+    }
+    let number: f64 = text.parse().ok()?;
+    let decimals = text
+        .split_once('.')
+        .map_or(0, |(_, decimals)| decimals.len());
+    Some((number, 0.5 * 0.1_f64.powi(decimals as i32)))
 }

@@ -50,17 +50,29 @@ impl Message {
 
     fn report(&self) -> Report {
         let (armour, fill) = self.armoured();
-        let mut reader = Reader::new(Settings::default());
         let half = armour.len().div_ceil(2).min(60);
         if armour.len() <= 60 {
             let line = sentence(&format!("AIVDM,1,1,,A,{armour},{fill}"));
-            return reader.line(line.as_bytes(), NOW).expect("a report");
+            return only(&[line]);
         }
         let first = sentence(&format!("AIVDM,2,1,7,A,{},0", &armour[..half]));
         let second = sentence(&format!("AIVDM,2,2,7,A,{},{fill}", &armour[half..]));
-        assert!(reader.line(first.as_bytes(), NOW).is_none());
-        reader.line(second.as_bytes(), NOW).expect("a report")
+        only(&[first, second])
     }
+}
+
+/// The only report of lines, which the last one completes.
+fn only(lines: &[String]) -> Report {
+    let mut reader = Reader::new(Settings::default());
+    let mut reports = Vec::new();
+    for line in lines {
+        assert!(reports.is_empty());
+        reader.line(line.as_bytes(), NOW, |report| reports.push(report));
+    }
+    let [report] = &reports[..] else {
+        panic!("{lines:?} {}", reader.counts());
+    };
+    report.clone()
 }
 
 fn sentence(body: &str) -> String {
@@ -95,7 +107,7 @@ fn has(message: &Message, note: Note) -> bool {
 }
 
 fn near(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-9 * (1.0 + b.abs())
+    a == b || (a - b).abs() <= 1e-9 * (1.0 + a.abs().min(b.abs()))
 }
 
 /// The messages with a position, where it stands in them, and its parts of a degree.

@@ -11,7 +11,7 @@ fn a_thousand_lines_of_the_norwegian_coast() {
     let mut reader = Reader::new(Settings::default());
     let mut reports: Vec<Report> = Vec::new();
     reader.bytes(file, 1_565_218_800.0, |report| reports.push(report));
-    reports.extend(reader.finish(1_565_218_800.0));
+    reader.finish(1_565_218_800.0, |report| reports.push(report));
     let counts = reader.counts();
     // as pyais 3.3.1 reads them, with the same positions and names
     assert_eq!((counts.lines, counts.reports), (1000, 877), "{counts}");

@@ -102,6 +102,8 @@ searoom_geometry::words! {
         Coarse => "long-range fixes beside finer ones",
         /// An identity at a second place: another ship with the same number, or a jump.
         SecondPlace => "fixes at a second place of the same ship",
+        /// Speed, course or heading without a place, of a ship whose place is known.
+        Motion => "reports of speed and heading alone",
         /// A ship without a place.
         WithoutPlace => "fixes without a place",
     }
@@ -282,7 +284,11 @@ impl Picture {
             return Taken::Static;
         };
         let Some(position) = fix.position else {
-            return Taken::WithoutPlace;
+            // a sensor of speed or heading alone says nothing of the place
+            return match report.notes.has(Note::NoPosition) {
+                true => Taken::WithoutPlace,
+                false => known.steady(&fix),
+            };
         };
         known.place(fix, position, report.notes, &self.settings)
     }
@@ -446,6 +452,18 @@ impl Known {
         match is_second {
             true => Taken::SecondPlace,
             false => Taken::Fix,
+        }
+    }
+
+    /// Speed, course and heading alone are those of the newest place.
+    fn steady(&mut self, fix: &Fix) -> Taken {
+        let newest = self.tracks.iter_mut();
+        match newest.max_by(|a, b| a.fix.time.most.total_cmp(&b.fix.time.most)) {
+            Some(track) => {
+                track.steady(fix);
+                Taken::Motion
+            }
+            None => Taken::WithoutPlace,
         }
     }
 

@@ -173,12 +173,13 @@ impl Known {
             ..fix.velocity
         };
         let fastest = self.fastest(settings);
+        let acceleration = settings.acceleration_mps2[usize::from(self.is_craft())];
+        // a velocity of another time than the place may have changed by so much
+        let changed = acceleration * track.velocity_apart();
+        let velocity = changed_by(velocity, changed);
         let motion = match drift {
             Some(drift) => outer_disc(drift * ages.most, 0.0),
-            None => {
-                let acceleration = settings.acceleration_mps2[usize::from(self.is_craft())];
-                since_the_fix(&velocity, ages, acceleration, fastest)
-            }
+            None => since_the_fix(&velocity, ages, acceleration, fastest),
         };
         let (hull, hull_notes) = self.size();
         let heading = turned_by(fix.heading);
@@ -244,6 +245,23 @@ impl Known {
                 status: self.status,
             },
         })
+    }
+}
+
+/// A velocity set that holds every velocity within a distance of one of its own, m/s.
+fn changed_by(velocity: VelocitySet, changed: f64) -> VelocitySet {
+    if changed == 0.0 {
+        return velocity;
+    }
+    let speed = velocity.speed;
+    let share = changed / speed.least;
+    let turned = if share < 1.0 { share.asin() } else { PI };
+    VelocitySet {
+        speed: Interval::new((speed.least - changed).max(0.0), speed.most + changed),
+        course: Directions {
+            half: (velocity.course.half + turned).min(PI),
+            ..velocity.course
+        },
     }
 }
 

@@ -2,10 +2,18 @@
 
 use searoom_geometry::frame::{Geographic, Vector, wrap};
 
-use crate::report::{Fix, Notes, PositionSet};
+use crate::report::{Directions, Fix, Notes, PositionSet, VelocitySet};
 
 /// Metres from the centre of the earth: the largest on WGS 84, so that no distance is too small.
 const RADIUS_M: f64 = 6_399_600.0;
+
+/// Seconds for which a velocity or a heading counts for a fix without one.
+const CARRIED_S: f64 = 10.0;
+
+/// True where nothing is known of a velocity.
+fn is_unknown(velocity: &VelocitySet) -> bool {
+    *velocity == VelocitySet::UNKNOWN
+}
 
 /// Half of a cell from which on a position is coarse, metres: that of a long-range report is 93 m.
 const COARSE_M: f64 = 50.0;
@@ -25,6 +33,9 @@ pub(super) struct Track {
     pub fix: Fix,
     pub position: PositionSet,
     pub notes: Notes,
+    /// When the fix's velocity and heading were measured, seconds: not always with the position.
+    pub velocity_at: f64,
+    heading_at: f64,
     /// The first of the fixes at which the ship has been at rest since.
     rest: Option<(f64, Geographic)>,
 }
@@ -33,6 +44,8 @@ impl Track {
     pub fn new(fix: Fix, position: PositionSet, notes: Notes) -> Self {
         Self {
             number: 1,
+            velocity_at: fix.time.most,
+            heading_at: fix.time.most,
             fix,
             position,
             notes,
@@ -69,12 +82,34 @@ impl Track {
         let moved = metres(begun.1, new.position.at).norm();
         let rest = (may_rest && self.may_rest(rest_mps) && moved <= self.reach() + new.reach())
             .then_some(begun);
-        let number = self.number;
-        *self = Self {
-            number,
-            rest,
-            ..new
-        };
+        let before = std::mem::replace(self, Self { rest, ..new });
+        self.number = before.number;
+        let now = self.fix.time.most;
+        if is_unknown(&self.fix.velocity) && now - before.velocity_at <= CARRIED_S {
+            (self.fix.velocity, self.velocity_at) = (before.fix.velocity, before.velocity_at);
+        }
+        if self.fix.heading == Directions::ALL && now - before.heading_at <= CARRIED_S {
+            (self.fix.heading, self.heading_at) = (before.fix.heading, before.heading_at);
+        }
+    }
+
+    /// Takes over what a report without a place says of the motion.
+    pub fn steady(&mut self, fix: &Fix) {
+        let time = fix.time.most;
+        if !is_unknown(&fix.velocity) && time > self.velocity_at {
+            (self.fix.velocity, self.velocity_at) = (fix.velocity, time);
+        }
+        if fix.heading != Directions::ALL && time > self.heading_at {
+            (self.fix.heading, self.heading_at) = (fix.heading, time);
+        }
+    }
+
+    /// Seconds between the position and the velocity, where they were not measured at once.
+    pub fn velocity_apart(&self) -> f64 {
+        match self.fix.time.contains(self.velocity_at) {
+            true => 0.0,
+            false => (self.velocity_at - self.fix.time.most).abs(),
+        }
     }
 
     /// True where a speed that was sent does not contradict a ship at rest. A speed that is not known
