@@ -7,7 +7,7 @@
 //!                                    ▲ PreviousPlan ─────────────────────┘
 //! ```
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use searoom_traffic::{Identity, Note, Picture, Reach, Ship};
@@ -38,6 +38,9 @@ const SAILED_SHARE: f64 = 0.5;
 /// Own ship is slower than its mission may ask for: so much more may be sailed in a horizon.
 const FASTER: f64 = 1.2;
 
+/// Seconds after which a plan is made anew though nothing has happened.
+const REPLAN_S: f64 = 10.0;
+
 /// What a watch knows from one cycle to the next.
 #[derive(Debug)]
 pub struct Watch {
@@ -50,6 +53,7 @@ pub struct Watch {
     fastest: f64,
     mission: Option<Mission>,
     previous: Option<PreviousPlan>,
+    last: Option<LastPlan>,
     /// True where own ship did not follow the last plan.
     is_off_plan: bool,
     names: HashMap<(Identity, u32), String>,
@@ -62,6 +66,36 @@ struct Mission {
     scenario: Scenario,
     /// Seconds of Unix time.
     began: f64,
+}
+
+/// The plan that is shown until the next one is due.
+#[derive(Debug)]
+struct LastPlan {
+    /// Seconds of Unix time.
+    made: f64,
+    document: WatchPlanDocument,
+    /// Names of the targets that it is for, and how many others it is clear of.
+    targets: HashSet<String>,
+    clear: usize,
+}
+
+impl LastPlan {
+    /// What is left of it.
+    fn after(&self, elapsed: f64) -> WatchPlanDocument {
+        let legs = self.document.legs.iter();
+        let left = legs.filter(|leg| leg.until_s > elapsed);
+        WatchPlanDocument {
+            made_s_ago: elapsed,
+            legs: left
+                .map(|leg| WatchLegDocument {
+                    from_s: (leg.from_s - elapsed).max(0.0),
+                    until_s: leg.until_s - elapsed,
+                    ..leg.clone()
+                })
+                .collect(),
+            ..self.document.clone()
+        }
+    }
 }
 
 /// One moment of a watch.
@@ -97,6 +131,7 @@ impl Watch {
             fastest: scenario.own_ship.max_speed(),
             mission: None,
             previous: None,
+            last: None,
             is_off_plan: false,
             names: HashMap::new(),
         })
@@ -129,7 +164,7 @@ impl Watch {
                 "own ship's position, course or speed is not known: no risk is computed".to_owned(),
             );
             // what own ship does unseen is no plan
-            (self.mission, self.previous) = (None, None);
+            (self.mission, self.previous, self.last) = (None, None, None);
             return Moment {
                 document: WatchDocument { events, ..document },
                 run: None,
@@ -230,7 +265,7 @@ impl Watch {
         }
         scenario.memory = crate::scenario::Memory::default();
         // its times count from the mission before
-        self.previous = None;
+        (self.previous, self.last) = (None, None);
         self.mission = Some(Mission {
             scenario,
             began: time,
@@ -291,14 +326,26 @@ impl Watch {
             })
             .collect();
         if !wanted.contains(&true) {
-            self.previous = None;
+            (self.previous, self.last) = (None, None);
             return None;
         }
-        let (run, planned_for) = planned(&scenario, &sets, wanted);
+        let elapsed = |last: &LastPlan| document.time_s - last.made;
+        if let Some(last) = &self.last
+            && !self.is_off_plan
+            && elapsed(last) < REPLAN_S
+            && goes_on(last, &scenario, &sets, &wanted)
+        {
+            document.clear = last.clear;
+            document.plan = Some(last.after(elapsed(last)));
+            return None;
+        }
+        let (run, is_planned_for) = planned(&scenario, &sets, wanted);
+        let planned_for = is_planned_for.iter().filter(|is| **is).count();
         document.clear = scenario.targets.len() - planned_for;
         let has_manoeuvre = !run.planned.manoeuvres.is_empty();
         self.previous =
             PreviousPlan::of(&run).filter(|_| has_manoeuvre || !document.dangerous.is_empty());
+        self.last = None;
         run.planned.outcome.plan()?;
         let plan = PlanDocument::of(&run);
         let legs = planned_legs(&plan).into_iter().map(|leg| WatchLegDocument {
@@ -309,11 +356,23 @@ impl Watch {
             because_of: leg.because_of,
             events: leg.events,
         });
-        document.plan = Some(WatchPlanDocument {
+        let shown = WatchPlanDocument {
             verdict: verdict_line(&plan),
             safe: plan.is_safe(),
             keeps_plan: run.planned.is_remainder(),
+            made_s_ago: 0.0,
             legs: legs.collect(),
+        };
+        document.plan = Some(shown.clone());
+        let names = scenario.targets.iter().zip(&is_planned_for);
+        self.last = Some(LastPlan {
+            made: document.time_s,
+            document: shown,
+            targets: names
+                .filter(|(_, is)| **is)
+                .map(|(target, _)| target.name.clone())
+                .collect(),
+            clear: document.clear,
         });
         Some(run)
     }
@@ -335,8 +394,8 @@ impl Watch {
 }
 
 /// The plan for the ships that are wanted, and for those whose sets with domain a plan without them would
-/// enter: the others do not bear on it. Returns the number of targets that it is for, too.
-fn planned(scenario: &Scenario, sets: &[TargetSets], mut wanted: Vec<bool>) -> (Run, usize) {
+/// enter: the others do not bear on it. Says which it is for, too.
+fn planned(scenario: &Scenario, sets: &[TargetSets], mut wanted: Vec<bool>) -> (Run, Vec<bool>) {
     loop {
         let run = pipeline::run(only(scenario, &wanted));
         let segments = run
@@ -353,9 +412,28 @@ fn planned(scenario: &Scenario, sets: &[TargetSets], mut wanted: Vec<bool>) -> (
             }
         }
         if is_whole {
-            return (run, wanted.iter().filter(|wanted| **wanted).count());
+            return (run, wanted);
         }
     }
+}
+
+/// True where the last plan is still one: every ship that bears on it was planned for and keeps to what it
+/// assumes, and what is left of it enters no set that a ship is in now. A plan that was not safe is made anew.
+fn goes_on(last: &LastPlan, scenario: &Scenario, sets: &[TargetSets], wanted: &[bool]) -> bool {
+    let memory = &scenario.memory;
+    let targets = scenario.targets.iter().zip(wanted);
+    let mut new =
+        targets.filter(|(target, wanted)| **wanted && !last.targets.contains(&target.name));
+    let mut enters = sets
+        .iter()
+        .map(|sets| sets.hard.is_entered(&memory.remainder, TOUCH_M));
+    last.document.safe
+        && memory.outside_velocities.is_empty()
+        && memory.outside_places.is_empty()
+        && memory.missing.is_empty()
+        && !memory.remainder.is_empty()
+        && new.next().is_none()
+        && !enters.any(|enters| enters)
 }
 
 /// A scenario with some of its targets.

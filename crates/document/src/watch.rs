@@ -88,6 +88,9 @@ pub struct WatchPlanDocument {
     pub safe: bool,
     /// True where it is what is left of the plan before.
     pub keeps_plan: bool,
+    /// How old it is: it is made anew every 10 s, and at once where a ship comes near that it is not for, or
+    /// leaves what it assumes.
+    pub made_s_ago: f64,
     /// The next legs, from now on.
     pub legs: Vec<WatchLegDocument>,
 }

@@ -171,7 +171,7 @@ speed_mps = 7.0
 fn watch(ships: u32, seconds: u32, seed: u64) {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let (fleet, plane) = (fleet(ships, &mut rng), plane());
-    let own = Sailing {
+    let mut own = Sailing {
         mmsi: OWN,
         place: Vector::zeros(),
         course: 0.0,
@@ -185,9 +185,9 @@ fn watch(ships: u32, seconds: u32, seed: u64) {
     let mut feed = Feed::new(&Settings::default(), 1, picture, f64::INFINITY);
     let mut watch = Watch::new(SCENARIO, "".as_ref(), None).expect("a scenario");
     let (mut times, mut with_plan, mut dangerous, mut near) = (Vec::new(), 0, 0, 0);
+    let mut not_safe = 0;
     for second in 0..seconds {
         let time = f64::from(second);
-        let begun = processor_s();
         let mut lines = sentence(&own, time, &plane);
         for ship in &fleet {
             if (time - ship.phase).rem_euclid(INTERVAL_S) < 1.0 {
@@ -198,7 +198,31 @@ fn watch(ships: u32, seconds: u32, seed: u64) {
         feed.recorded(0, &lines);
         let moment = watch.at(feed.picture(), BEGIN_S + time);
         let took = processor_s() - written;
-        let _ = begun;
+        // own ship sails its plan, or else its mission
+        let (place, course, speed) = match moment
+            .run
+            .as_ref()
+            .and_then(|run| run.planned.outcome.plan())
+        {
+            Some(plan) => {
+                let pose = plan.trajectory.pose_at(1.0);
+                let speed = (pose.position - plan.trajectory.pose_at(0.0).position).norm();
+                (pose.position, pose.heading, speed)
+            }
+            None => (
+                own.at(time) + direction(own.course) * own.speed,
+                own.course,
+                own.speed,
+            ),
+        };
+        own = Sailing {
+            place: place - direction(course) * (speed * (time + 1.0)),
+            course,
+            speed,
+            ..own
+        };
+        not_safe += u32::from(second >= INTERVAL_S as u32)
+            * u32::from(moment.document.plan.as_ref().is_some_and(|plan| !plan.safe));
         if second >= INTERVAL_S as u32 {
             times.push(1e3 * took);
             with_plan += u32::from(moment.document.plan.is_some());
@@ -209,7 +233,7 @@ fn watch(ships: u32, seconds: u32, seed: u64) {
     times.sort_by(f64::total_cmp);
     let moments = times.len();
     println!(
-        "{ships} ships, {moments} moments, {with_plan} with a plan; {:.1} ships near and {:.1} dangerous in the mean",
+        "{ships} ships, {moments} moments, {with_plan} with a plan, {not_safe} not safe; {:.1} ships near and {:.1} dangerous in the mean",
         near as f64 / moments as f64,
         dangerous as f64 / moments as f64
     );
