@@ -597,7 +597,7 @@ fn a_library_links_what_it_needs() {
         ("searoom-geometry", 45, &["searoom-model"]),
         ("searoom-input", 60, &["searoom-model", "searoom-colregs"]),
         ("searoom-model", 45, &["searoom-sets", "searoom-colregs"]),
-        ("searoom-traffic", 45, &["searoom-model", "searoom-input"]),
+        ("searoom-traffic", 52, &["searoom-sets", "searoom-input"]),
         ("searoom-sets", 45, &["searoom-colregs", "searoom-planner"]),
         ("searoom-colregs", 45, &["searoom-sets", "searoom-planner"]),
         ("searoom-planner", 55, &["searoom-evaluation", "searoom"]),

@@ -141,6 +141,11 @@ fn routes_are_read_or_refused() {
 }
 
 #[test]
+fn traffic_is_read_or_counted() {
+    replay("traffic");
+}
+
+#[test]
 fn scenario_files_are_read_or_refused() {
     replay("scenario");
 }

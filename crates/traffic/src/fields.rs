@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use searoom_geometry::frame::{
-    Geographic, KNOT_MPS, Vector, heading_from_course_deg, radians_from_deg,
+    Geographic, KNOT_MPS, Vector, heading_from_course_deg, radians_from_deg, wrap,
 };
 
 use crate::report::{
@@ -196,6 +196,17 @@ pub(crate) fn contradiction(status: Option<Status>, fix: &Fix, notes: &mut Notes
     if rests && fix.velocity.speed.least > KNOT_MPS {
         notes.add(Note::StatusContradictsSpeed);
     }
+}
+
+/// Metres from the centre of the earth: the largest on WGS 84, so that no distance is too small.
+const RADIUS_M: f64 = 6_399_600.0;
+
+/// Metres east and north from one place to another that is near.
+pub(crate) fn metres(from: Geographic, to: Geographic) -> Vector {
+    let east = wrap(radians_from_deg(to.lon_deg - from.lon_deg));
+    let lat = radians_from_deg(from.lat_deg);
+    let north = radians_from_deg(to.lat_deg) - lat;
+    Vector::new(east * lat.cos(), north) * RADIUS_M
 }
 
 /// A number of steps, to half a step each way. Speeds are not negative.

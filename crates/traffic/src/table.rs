@@ -4,11 +4,13 @@
 use std::collections::{HashMap, VecDeque};
 use std::fmt;
 
-use searoom_geometry::frame::{Geographic, wrap};
+use searoom_geometry::frame::Geographic;
 
 use crate::ais;
 use crate::counts::Dropped;
-use crate::fields::{contradiction, course_set, heading_set, hull, is_length, place, speed_set};
+use crate::fields::{
+    contradiction, course_set, heading_set, hull, is_length, metres, place, speed_set,
+};
 use crate::report::{
     Fix, HullSet, Identity, Interval, Kind, Name, Note, Notes, Report, Status, VelocitySet,
 };
@@ -423,7 +425,7 @@ impl Remembered {
         let at = report.fix.and_then(|fix| fix.position).map(|set| set.at);
         if let Some(before) = self.places.get(&key) {
             return match (at, before) {
-                (Some(a), Some(b)) => apart_m(a, *b) <= 2.0 * settings.inaccurate_m,
+                (Some(a), Some(b)) => metres(a, *b).norm() <= 2.0 * settings.inaccurate_m,
                 _ => true,
             };
         }
@@ -436,14 +438,6 @@ impl Remembered {
         self.places.insert(key, at);
         false
     }
-}
-
-/// Metres between two places that are near one another.
-fn apart_m(a: Geographic, b: Geographic) -> f64 {
-    const DEGREE_M: f64 = 60.0 * 1852.0;
-    let east =
-        wrap((a.lon_deg - b.lon_deg).to_radians()).to_degrees() * a.lat_deg.to_radians().cos();
-    (a.lat_deg - b.lat_deg).hypot(east) * DEGREE_M
 }
 
 /// Cells of one line of CSV.

@@ -8,6 +8,7 @@ use anyhow::{Context, bail};
 use chrono::{DateTime, Utc};
 use searoom::frame::{
     Geographic, Georeference, Pose, Vector, heading_from_course_deg, mps_from_knots,
+    radians_from_deg,
 };
 use searoom::input::InputError;
 use searoom::report::write_atomically;
@@ -111,7 +112,7 @@ fn picture(args: &ImportArgs) -> PictureSettings {
     let usual = PictureSettings::default();
     PictureSettings {
         speed_spread_mps: speed_spread_mps.unwrap_or(usual.speed_spread_mps),
-        course_spread: course_spread_deg.map_or(usual.course_spread, f64::to_radians),
+        course_spread: course_spread_deg.map_or(usual.course_spread, radians_from_deg),
         own: args.own.map(Identity::Mmsi),
         own_stale_s: OWN_AGE_S,
         own_is_exact: true,

@@ -8,7 +8,9 @@ use std::time::Instant;
 use clap::{Parser, Subcommand};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use searoom::frame::{Geographic, Georeference, Vector, direction, knots_from_mps};
+use searoom::frame::{
+    Geographic, Georeference, Vector, course_deg_from_heading, direction, knots_from_mps,
+};
 use searoom::traffic::{Feed, Identity, PictureSettings, Settings, Watch};
 
 const BEGIN_S: f64 = 1_700_000_000.0;
@@ -102,7 +104,7 @@ fn fleet(ships: u32, rng: &mut ChaCha8Rng) -> Vec<Sailing> {
 /// Message 1 of AIS with a tag block.
 fn sentence(ship: &Sailing, time: f64, plane: &Georeference) -> Vec<u8> {
     let Geographic { lat_deg, lon_deg } = plane.to_geographic(ship.at(time));
-    let course = (90.0 - ship.course.to_degrees()).rem_euclid(360.0);
+    let course = course_deg_from_heading(ship.course);
     let mut bits: Vec<bool> = Vec::with_capacity(168);
     let mut put = |value: i64, size: u32| {
         bits.extend((0..size).rev().map(|bit| value >> bit & 1 == 1));

@@ -14,6 +14,7 @@ use std::collections::HashMap;
 
 use searoom_geometry::frame::{Geographic, Georeference, KNOT_MPS, Vector, radians_from_deg};
 
+use crate::fields::metres;
 use crate::report::{Fix, HullSet, Identity, Kind, Name, Note, Notes, PositionSet, Report, Status};
 pub use own::OwnPosition;
 use own::OwnShip;
@@ -309,7 +310,7 @@ impl Picture {
     fn make_room(&mut self) {
         let own = self.own.place();
         let far = |known: &Known| match (own, known.tracks.last()) {
-            (Some(own), Some(track)) => track::metres(own, track.position.at).norm(),
+            (Some(own), Some(track)) => metres(own, track.position.at).norm(),
             _ => f64::INFINITY,
         };
         let mut ages: Vec<(i64, f64, Identity)> = self

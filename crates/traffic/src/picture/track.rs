@@ -1,11 +1,9 @@
 //! The last fix of a ship at one place, and since when it has been lying there.
 
-use searoom_geometry::frame::{Geographic, Vector, wrap};
+use searoom_geometry::frame::Geographic;
 
+use crate::fields::metres;
 use crate::report::{Directions, Fix, Notes, PositionSet, VelocitySet};
-
-/// Metres from the centre of the earth: the largest on WGS 84, so that no distance is too small.
-const RADIUS_M: f64 = 6_399_600.0;
 
 /// Seconds for which a velocity or a heading counts for a fix without one.
 const CARRIED_S: f64 = 10.0;
@@ -17,14 +15,6 @@ fn is_unknown(velocity: &VelocitySet) -> bool {
 
 /// Half of a cell from which on a position is coarse, metres: that of a long-range report is 93 m.
 const COARSE_M: f64 = 50.0;
-
-/// Metres east and north from one place to another that is near.
-pub(super) fn metres(from: Geographic, to: Geographic) -> Vector {
-    let east = wrap((to.lon_deg - from.lon_deg).to_radians());
-    let lat = from.lat_deg.to_radians();
-    let north = to.lat_deg.to_radians() - lat;
-    Vector::new(east * lat.cos(), north) * RADIUS_M
-}
 
 #[derive(Debug, Clone)]
 pub(super) struct Track {
