@@ -21,6 +21,7 @@ campaign: frame geometry tolerance colregs target vessel input output parallel p
 study: parallel document frame text tolerance trajectory vessel target colregs obstacle planner evaluation scenario pipeline
 document: input frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline replanning text
 publication: document evaluation pipeline verification
+traffic: frame tolerance trajectory target colregs obstacle planner scenario pipeline document replanning vessel
 replanning: frame tolerance trajectory vessel target colregs planner scenario pipeline text
 report: labels frame tolerance geometry trajectory vessel colregs obstacle planner evaluation verification scenario pipeline document study output text
 recording: labels frame tolerance geometry trajectory vessel target colregs obstacle planner evaluation scenario pipeline document study output text
@@ -78,6 +79,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
         &[
             "crates/input/src/field.rs",
             "crates/scenario/src/",
+            "crates/traffic/src/",
             "src/report/route.rs",
         ],
     ),
@@ -88,7 +90,7 @@ const ONLY_IN: &[(&str, &[&str])] = &[
     ("kurbo", &["src/report/figure/render.rs"]),
     ("kuva", &["src/report/figure/"]),
     ("png", &["src/report/figure/render.rs"]),
-    ("parquet", &["src/campaign/part.rs"]),
+    ("parquet", &["src/campaign/part.rs", "crates/traffic/src/"]),
     ("statrs", &["src/campaign/bounds.rs"]),
     ("clap", &["src/cli/", "src/main.rs"]),
     (

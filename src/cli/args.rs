@@ -5,19 +5,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use chrono::{DateTime, Utc};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Arg, Args, Parser, Subcommand, ValueHint};
 use searoom::colregs::Thresholds;
 use searoom::document::{PlanDocument, breaks};
-use searoom::input::{DATE_TIME, date_time};
+use searoom::input::DATE_TIME;
 use searoom::pipeline::Run;
 use searoom::planner::{Planner, SearchKind, planner_words};
 use searoom::report::figure::{FigureFormat, FigureOptions};
 use searoom::report::printable_lines;
 use searoom::scenario::import::{Assumed, Assumption};
 use searoom::scenario::read_thresholds;
-use searoom::scenario::{Compliance, Fault, Scenario};
+use searoom::scenario::{Compliance, Fault, Scenario, unix_seconds};
 use searoom::traffic::Source;
 
 use super::campaign::CampaignArgs;
@@ -249,7 +248,7 @@ pub struct ImportArgs {
     pub files: Vec<PathBuf>,
     /// Make one scenario of the traffic at a date and time, such as 2026-05-01T12:00:00Z
     #[arg(long, value_name = "TIME", value_parser = date, requires = "route", help_heading = TRAFFIC)]
-    pub at: Option<DateTime<Utc>>,
+    pub at: Option<f64>,
     /// Own ship's MMSI, where the traffic has own ship as one among others
     #[arg(long, value_name = "MMSI", requires = "at", help_heading = TRAFFIC)]
     #[arg(value_parser = clap::value_parser!(u32).range(1..=999_999_999))]
@@ -562,9 +561,9 @@ fn every(word: &str) -> Result<f64, String> {
     number(word, |n| (0.1..=3600.0).contains(&n), "0.1 to 3600")
 }
 
-/// A date and a time with its offset from UTC.
-fn date(word: &str) -> Result<DateTime<Utc>, String> {
-    date_time(word).ok_or_else(|| format!("allowed: {DATE_TIME}"))
+/// Seconds of Unix time of a date and a time with its offset from UTC.
+fn date(word: &str) -> Result<f64, String> {
+    unix_seconds(word).ok_or_else(|| format!("allowed: {DATE_TIME}"))
 }
 
 /// Latitude, longitude, course and knots.

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use searoom::document::PlanDocument;
 use searoom::input::InputError;
 use searoom::report::{watch_text, write_atomically};
@@ -22,7 +22,7 @@ use super::simulate::catch_interrupt;
 use super::status::ExitStatus;
 
 /// Arrivals that wait for being read; a source that sends more waits.
-const WAITING: usize = 4096;
+const WAITING: usize = 1024;
 
 /// Longest line that is read at once, bytes.
 const LINE: u64 = 1 << 16;
@@ -41,6 +41,7 @@ pub fn watch(args: &WatchArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     };
     let picture = PictureSettings {
         own: args.own.map(Identity::Mmsi),
+        own_reach_m: watch.own_reach(),
         ..PictureSettings::default()
     };
     let mut view = Viewer {
@@ -59,6 +60,14 @@ pub fn watch(args: &WatchArgs, output: &Output) -> anyhow::Result<ExitStatus> {
     let interrupted = catch_interrupt(output);
     match args.listen.as_slice() {
         [Source::File(file)] => replay(&mut view, file, &interrupted)?,
+        sources
+            if sources
+                .iter()
+                .any(|source| matches!(source, Source::File(_))) =>
+        {
+            let found = "a file beside another source";
+            bail!("--listen: found {found}; allowed: one file alone, or sources that are live");
+        }
         sources => live(&mut view, sources, &interrupted)?,
     }
     output.notes(None, &[("traffic".to_owned(), view.feed.counted())]);
@@ -129,6 +138,15 @@ fn replay(view: &mut Viewer, file: &Path, interrupted: &AtomicBool) -> anyhow::R
         }
         view.feed.recorded(0, &line);
         let time = view.feed.time();
+        let set_by = view.feed.clock_set_by();
+        if set_by != 0.0 {
+            view.events.push(format!(
+                "the times of the reports go on {set_by:.0} s from before"
+            ));
+            if set_by < 0.0 {
+                (first, next) = (first + set_by, time);
+            }
+        }
         if time.is_nan() {
             continue;
         }
@@ -145,12 +163,14 @@ fn replay(view: &mut Viewer, file: &Path, interrupted: &AtomicBool) -> anyhow::R
                 return Ok(());
             }
             let due = Duration::try_from_secs_f64((next - first) / speed).unwrap_or_default();
-            std::thread::sleep(due.saturating_sub(begun.elapsed()));
+            if wait(due.saturating_sub(begun.elapsed()), interrupted) {
+                return Ok(());
+            }
             view.show(next)?;
             next += every;
         }
     }
-    view.feed.recorded(0, b"\n");
+    view.feed.finish(0);
     if !next.is_nan() && !is_over(view, next - first) {
         view.show(next)?;
     }
@@ -165,26 +185,29 @@ fn live(view: &mut Viewer, sources: &[Source], interrupted: &AtomicBool) -> anyh
             .with_context(|| format!("--listen {}", source.name()))?;
     }
     drop(sender);
-    let first = now();
-    let mut next = first + view.args.every_s;
+    let clock = Clock::begun();
+    let mut next = clock.at(Instant::now()) + view.args.every_s;
+    let first = clock.wall;
     let mut open = sources.len();
     while !interrupted.load(Ordering::Relaxed) {
-        let wait = Duration::try_from_secs_f64(next - now()).unwrap_or_default();
-        match arrivals.recv_timeout(wait) {
-            Ok(Arrival::Bytes(source, bytes)) => view.feed.live(source, &bytes, now()),
+        let due = Duration::try_from_secs_f64(next - clock.at(Instant::now())).unwrap_or_default();
+        match arrivals.recv_timeout(due.min(SLICE)) {
+            Ok(Arrival::Bytes(source, bytes, when)) => {
+                view.feed.live(source, &bytes, clock.at(when));
+            }
             Ok(Arrival::Event(event)) => view.events.push(event),
             Ok(Arrival::End(source)) => {
-                view.feed.live(source, b"\n", now());
+                view.feed.live(source, b"\n", clock.at(Instant::now()));
                 open -= 1;
             }
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => open = 0,
         }
-        let time = now();
+        let time = clock.at(Instant::now());
         if time >= next || open == 0 {
             view.show(time)?;
             // moments that were missed are not made up for
-            next = (next + view.args.every_s).max(now());
+            next = (next + view.args.every_s).max(clock.at(Instant::now()));
         }
         if open == 0 || is_over(view, time - first) {
             break;
@@ -193,12 +216,45 @@ fn live(view: &mut Viewer, sources: &[Source], interrupted: &AtomicBool) -> anyh
     Ok(())
 }
 
-fn is_over(view: &Viewer, elapsed: f64) -> bool {
-    view.output.is_closed() || view.args.duration_s.is_some_and(|most| elapsed > most)
+/// The machine's clock at the beginning, and time since: a clock that is set in between moves no moment.
+struct Clock {
+    /// Seconds of Unix time.
+    wall: f64,
+    begun: Instant,
 }
 
-/// Seconds of Unix time.
-fn now() -> f64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0.0, |since| since.as_secs_f64())
+impl Clock {
+    fn begun() -> Self {
+        let since = SystemTime::now().duration_since(UNIX_EPOCH);
+        Self {
+            wall: since.map_or(0.0, |since| since.as_secs_f64()),
+            begun: Instant::now(),
+        }
+    }
+
+    fn at(&self, when: Instant) -> f64 {
+        self.wall + when.saturating_duration_since(self.begun).as_secs_f64()
+    }
+}
+
+/// Longest time without a look at Ctrl-C.
+const SLICE: Duration = Duration::from_millis(200);
+
+/// Waits; true where Ctrl-C ends that.
+fn wait(time: Duration, interrupted: &AtomicBool) -> bool {
+    let until = Instant::now() + time;
+    loop {
+        if interrupted.load(Ordering::Relaxed) {
+            return true;
+        }
+        let left = until.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return false;
+        }
+        std::thread::sleep(left.min(SLICE));
+    }
+}
+
+fn is_over(view: &Viewer, elapsed: f64) -> bool {
+    view.output.is_closed() || view.args.duration_s.is_some_and(|most| elapsed > most)
 }

@@ -42,6 +42,8 @@ fn headline(moment: &WatchDocument) -> String {
         );
     };
     let danger = match moment.dangerous.len() {
+        _ if !moment.risk_computed => "risk is NOT computed".to_owned(),
+        0 if !moment.in_no_set.is_empty() => "no risk with the ships in sets".to_owned(),
         0 => "no risk of collision".to_owned(),
         count => format!("risk of collision with {count}"),
     };

@@ -1,10 +1,18 @@
 //! A stream of reports on its way into the picture.
 
-use searoom_traffic::{Identity, Picture, PictureSettings, Reader, Settings, Taken};
+use searoom_traffic::{
+    Fix, Identity, MissingColumn, Picture, PictureSettings, Reader, Settings, Taken,
+};
 
-/// Seconds by which a report may be ahead of the feed's clock. A report that is farther ahead moves the clock
-/// only where the next one agrees with it: one wrong time must not make every ship old.
+/// Seconds by which a report may be off the feed's clock. One that is farther off moves the clock only where
+/// [`AGREE`] in a row agree: a wrong time must not make every ship old.
 const JUMP_S: f64 = 60.0;
+
+/// Reports in a row that move the clock.
+const AGREE: u32 = 10;
+
+/// No date of real traffic is before this, 9 September 2001: a time of day without a date is.
+const DATED: f64 = 1e9;
 
 /// The reader of a stream, the picture that it draws, and its clock.
 ///
@@ -25,20 +33,38 @@ pub struct Feed {
 #[derive(Debug, Clone, Copy)]
 struct FeedClock {
     time: f64,
-    /// Farther ahead, until another report agrees.
-    ahead: f64,
+    /// Another time, on which so many reports in a row agree.
+    other: (f64, u32),
+    /// Seconds by which the clock was set, until that is told.
+    set_by: f64,
 }
 
 impl FeedClock {
-    fn hear(&mut self, time: f64) {
-        let is_near = |from: f64| (time - from).abs() <= JUMP_S;
+    const UNKNOWN: Self = Self {
+        time: f64::NAN,
+        other: (f64::NAN, 0),
+        set_by: 0.0,
+    };
+
+    /// Hears a time. True where the clock goes back.
+    fn hear(&mut self, time: f64) -> bool {
+        let off = time - self.time;
         // the first time is taken as it is
-        if self.time.is_nan() || is_near(self.time) || is_near(self.ahead) {
+        if off.is_nan() || off.abs() <= JUMP_S {
             self.time = self.time.max(time);
-            self.ahead = f64::NAN;
-        } else if time > self.time {
-            self.ahead = time;
+            self.other = (f64::NAN, 0);
+            return false;
         }
+        let (other, count) = self.other;
+        let agrees = (time - other).abs() <= JUMP_S;
+        self.other = (time, if agrees { count + 1 } else { 1 });
+        if self.other.1 < AGREE {
+            return false;
+        }
+        self.set_by += off;
+        self.time = time;
+        self.other = (f64::NAN, 0);
+        off < 0.0
     }
 }
 
@@ -50,10 +76,7 @@ impl Feed {
                 .map(|_| Reader::new(settings.clone()))
                 .collect(),
             picture: Picture::new(picture),
-            clock: FeedClock {
-                time: f64::NAN,
-                ahead: f64::NAN,
-            },
+            clock: FeedClock::UNKNOWN,
             until,
             left_out: 0,
             undated: 0,
@@ -88,16 +111,19 @@ impl Feed {
         };
         reader.bytes(line, now, |report| {
             // own ship's receiver has a clock of its own, where the lines have none
+            let is_dated = |fix: &Fix| fix.time.most > DATED;
             let own = report
                 .fix
-                .filter(|_| report.is_own && report.received == now);
+                .filter(|fix| report.is_own && report.received == now && is_dated(fix));
             let time = own.map_or(report.received, |fix| fix.time.most.max(report.received));
             if time == UNDATED {
                 *undated += 1;
             } else if time > *until {
                 *left_out += 1;
             } else {
-                clock.hear(time);
+                if clock.hear(time) {
+                    picture.set_back(clock.time);
+                }
                 picture.take(&report, clock.time);
             }
         });
@@ -113,6 +139,39 @@ impl Feed {
         reader.bytes(bytes, now, |report| {
             picture.take(&report, now);
         });
+    }
+
+    /// The end of a source: what waits for its other parts has none.
+    pub fn finish(&mut self, source: usize) {
+        self.recorded(source, b"\n");
+        let (picture, time) = (&mut self.picture, self.clock.time);
+        if let Some(reader) = self.readers.get_mut(source)
+            && !time.is_nan()
+        {
+            reader.finish(time, |report| {
+                picture.take(&report, time);
+            });
+        }
+    }
+
+    /// Seconds by which the clock of a recorded feed was set since this was asked, because many reports in a
+    /// row had another time; zero where it was not.
+    pub fn clock_set_by(&mut self) -> f64 {
+        std::mem::take(&mut self.clock.set_by)
+    }
+
+    /// What a table lacks, where it is one that cannot be read.
+    pub fn missing_columns(&self) -> impl Iterator<Item = (usize, &MissingColumn)> {
+        let readers = self.readers.iter().enumerate();
+        readers.filter_map(|(index, reader)| Some((index, reader.missing_column()?)))
+    }
+
+    /// Number of reports of all sources.
+    pub fn reports(&self) -> u64 {
+        self.readers
+            .iter()
+            .map(|reader| reader.counts().reports)
+            .sum()
     }
 
     /// What is known of own ship and the others.
@@ -168,21 +227,26 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_wrong_time_does_not_move_the_clock() {
-        let mut clock = FeedClock {
-            time: f64::NAN,
-            ahead: f64::NAN,
-        };
+    fn a_wrong_time_does_not_move_the_clock_and_ten_do() {
+        let mut clock = FeedClock::UNKNOWN;
         let after = |time: f64, clock: &mut FeedClock| {
             clock.hear(time);
             clock.time
         };
-        let times = [
-            100.0, 110.0, 105.0, 9e9, 120.0, 3000.0, 3010.0, 50.0, 3020.0,
-        ];
+        let times = [100.0, 110.0, 105.0, 9e9, 120.0, 3000.0, 3010.0, 50.0, 119.0];
         let expected = [
-            100.0, 110.0, 110.0, 110.0, 120.0, 120.0, 3010.0, 3010.0, 3020.0,
+            100.0, 110.0, 110.0, 110.0, 120.0, 120.0, 120.0, 120.0, 120.0,
         ];
         assert_eq!(times.map(|time| after(time, &mut clock)), expected);
+        for step in 0..9 {
+            assert!(!clock.hear(3000.0 + f64::from(step)) && clock.time == 120.0);
+        }
+        assert!(!clock.hear(3010.0) && clock.time == 3010.0);
+        // and back, after a first line that was a day ahead
+        for _ in 0..9 {
+            assert!(!clock.hear(500.0));
+        }
+        assert!(clock.hear(501.0) && clock.time == 501.0);
+        assert_eq!(clock.set_by, 501.0 - 120.0);
     }
 }

@@ -10,14 +10,17 @@ use crate::vessel::Hull;
 /// Own ship in traffic.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Own {
+    /// As it sends it.
     pub name: Option<String>,
+    /// On the plane.
     pub pose: Pose,
     /// m/s.
     pub speed: f64,
     /// The hull, where own ship sends its size.
     pub hull: Option<Hull>,
-    /// Metres by which it may be elsewhere, and seconds since the fix; zero where a user says where it is.
+    /// Metres by which it may be elsewhere; zero where a user says where it is.
     pub radius_m: f64,
+    /// Seconds since the fix.
     pub age_s: f64,
 }
 
@@ -26,15 +29,18 @@ pub struct Own {
 pub struct Surroundings {
     /// `None` where own ship's position is not known, or too old.
     pub own: Option<Own>,
+    /// Each with its sets.
     pub ships: Vec<Ship>,
     /// Number of ships that are too far to matter.
     pub beyond: usize,
+    /// What is in no set.
     pub listed: Vec<Listed>,
     /// Cautions for ships that are in no set, and notes on the others.
     pub remarks: Remarks,
 }
 
 impl Surroundings {
+    /// The ships as targets.
     pub fn targets(&self) -> Vec<Target> {
         self.ships.iter().map(|ship| ship.target.clone()).collect()
     }

@@ -5,10 +5,10 @@ use std::io::{ErrorKind, Read};
 use std::net::{TcpStream, ToSocketAddrs, UdpSocket};
 use std::path::PathBuf;
 use std::sync::mpsc::SyncSender;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Bytes that are read at once; no datagram is longer.
-const CHUNK: usize = 1 << 16;
+const CHUNK: usize = 1 << 14;
 
 /// Seconds between two attempts to connect: the first and the longest.
 const RETRY_S: [u64; 2] = [1, 30];
@@ -35,8 +35,8 @@ pub enum Source {
 /// What comes from a source.
 #[derive(Debug)]
 pub enum Arrival {
-    /// Bytes of a source, which may begin and end within a line.
-    Bytes(usize, Vec<u8>),
+    /// Bytes of a source, which may begin and end within a line, and when they came.
+    Bytes(usize, Vec<u8>, Instant),
     /// What has happened to a source, in words.
     Event(String),
     /// The source has ended for good.
@@ -115,7 +115,11 @@ fn copied(mut from: impl Read, index: usize, to: &SyncSender<Arrival>) {
             Ok(0) => break,
             Ok(read) => {
                 if to
-                    .send(Arrival::Bytes(index, chunk[..read].to_vec()))
+                    .send(Arrival::Bytes(
+                        index,
+                        chunk[..read].to_vec(),
+                        Instant::now(),
+                    ))
                     .is_err()
                 {
                     return;
@@ -141,10 +145,13 @@ fn datagrams(socket: &UdpSocket, address: &str, index: usize, to: &SyncSender<Ar
                 // a datagram holds whole lines
                 let mut bytes = chunk[..read].to_vec();
                 bytes.push(b'\n');
-                to.send(Arrival::Bytes(index, bytes))
+                to.send(Arrival::Bytes(index, bytes, Instant::now()))
             }
             Err(error) if is_silence(&error) => to.send(silent(address)),
-            Err(error) => to.send(Arrival::Event(format!("udp://{address}: {error}"))),
+            Err(error) => {
+                std::thread::sleep(Duration::from_secs(RETRY_S[0]));
+                to.send(Arrival::Event(format!("udp://{address}: {error}")))
+            }
         };
         if sent.is_err() {
             return;
@@ -174,7 +181,7 @@ fn connected(address: &str, index: usize, to: &SyncSender<Arrival>) {
                 {
                     return;
                 }
-                match read_on(stream, address, index, to) {
+                match read_on(stream, index, to) {
                     Some(why) => format!("tcp://{address}: {why}; connecting again"),
                     None => return,
                 }
@@ -182,7 +189,7 @@ fn connected(address: &str, index: usize, to: &SyncSender<Arrival>) {
             Err(error) => format!("tcp://{address}: {error}; again in {wait} s"),
         };
         // what was cut off is no line
-        let ended = to.send(Arrival::Bytes(index, b"\n".to_vec()));
+        let ended = to.send(Arrival::Bytes(index, b"\n".to_vec(), Instant::now()));
         if ended.is_err() || to.send(Arrival::Event(event)).is_err() {
             return;
         }
@@ -206,19 +213,21 @@ fn connect(address: &str) -> std::io::Result<TcpStream> {
 }
 
 /// Reads to the end of a connection, and says why it ended; `None` where nobody listens any more.
-fn read_on(
-    mut stream: TcpStream,
-    address: &str,
-    index: usize,
-    to: &SyncSender<Arrival>,
-) -> Option<String> {
+fn read_on(mut stream: TcpStream, index: usize, to: &SyncSender<Arrival>) -> Option<String> {
     let mut chunk = vec![0; CHUNK];
     loop {
         let sent = match stream.read(&mut chunk) {
             Ok(0) => return Some("closed by the server".to_owned()),
-            Ok(read) => to.send(Arrival::Bytes(index, chunk[..read].to_vec())),
+            Ok(read) => to.send(Arrival::Bytes(
+                index,
+                chunk[..read].to_vec(),
+                Instant::now(),
+            )),
             Err(error) if error.kind() == ErrorKind::Interrupted => Ok(()),
-            Err(error) if is_silence(&error) => to.send(silent(address)),
+            // the other end may be gone without a word
+            Err(error) if is_silence(&error) => {
+                return Some(format!("nothing for {} s", SILENT.as_secs()));
+            }
             Err(error) => return Some(error.to_string()),
         };
         sent.ok()?;

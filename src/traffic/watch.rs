@@ -22,9 +22,10 @@ use crate::document::{
 use crate::frame::{Georeference, Pose, course_deg_from_heading, direction, heading_of};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
+use crate::planner::Minimises;
 use crate::replanning::{PreviousPlan, remember};
-use crate::scenario::{Compliance, Fault, OwnNow, Scenario, after};
-use crate::target::ShipTrack;
+use crate::scenario::{Compliance, Fault, OwnNow, Scenario, unix_time};
+use crate::target::{Motion, ShipTrack};
 use crate::tolerance::TOUCH_M;
 use crate::trajectory::Segment;
 
@@ -34,6 +35,9 @@ const OFF_MISSION_RADII: f64 = 4.0;
 
 /// Share of a mission after which it begins anew: a route goes on beyond the part that the horizon holds.
 const SAILED_SHARE: f64 = 0.5;
+
+/// Metres beside own ship's way that hulls, margins and domains reach.
+const BESIDE_M: f64 = 5000.0;
 
 /// Own ship is slower than its mission may ask for: so much more may be sailed in a horizon.
 const FASTER: f64 = 1.2;
@@ -49,8 +53,9 @@ pub struct Watch {
     compliance: Option<Compliance>,
     plane: Georeference,
     horizon: f64,
-    /// Own ship's largest speed, m/s.
+    /// Own ship's largest speed, m/s, and half of its hull's diagonal, metres.
     fastest: f64,
+    own_reach: f64,
     mission: Option<Mission>,
     previous: Option<PreviousPlan>,
     last: Option<LastPlan>,
@@ -122,7 +127,13 @@ impl Watch {
             let allowed = "{ lat_deg, lon_deg }, because the feed has positions on the earth";
             return Err(vec![Fault::new("origin", "nothing", allowed)]);
         };
+        if matches!(scenario.planner.facts().minimises, Minimises::Own(_)) {
+            let found = format!("{:?}", scenario.planner.facts().name);
+            let allowed = "\"space-time\" or \"path-time\": a watch has no forces of own ship";
+            return Err(vec![Fault::new("planner.kind", found, allowed)]);
+        }
         Ok(Self {
+            own_reach: scenario.own_ship.hull.half_diagonal(),
             text: text.to_owned(),
             folder: folder.to_owned(),
             compliance,
@@ -137,10 +148,16 @@ impl Watch {
         })
     }
 
+    /// How far own ship's middle may be from an antenna whose place is not known, metres: for
+    /// [`PictureSettings::own_reach_m`](searoom_traffic::PictureSettings::own_reach_m).
+    pub fn own_reach(&self) -> f64 {
+        self.own_reach
+    }
+
     /// The risk at a time in seconds of Unix time, and a plan where there is any.
     pub fn at(&mut self, picture: &Picture, time: f64) -> Moment {
         let reach = Reach {
-            own_m: FASTER * self.fastest * self.horizon,
+            own_m: FASTER * self.fastest * self.horizon + BESIDE_M,
             within_s: self.horizon,
         };
         let mut around = surroundings(picture, time, &self.plane, reach);
@@ -154,15 +171,14 @@ impl Watch {
             clear: 0,
             beyond: around.beyond,
             in_no_set: around.remarks.cautions.clone(),
+            risk_computed: own.is_some(),
             dangerous: Vec::new(),
             plan: None,
             events: Vec::new(),
             took_s: 0.0,
         };
         let Some(own) = own else {
-            events.push(
-                "own ship's position, course or speed is not known: no risk is computed".to_owned(),
-            );
+            events.push(nowhere(picture, &self.plane, time));
             // what own ship does unseen is no plan
             (self.mission, self.previous, self.last) = (None, None, None);
             return Moment {
@@ -173,7 +189,12 @@ impl Watch {
         let run = match self.scenario(&own, &around, time, &mut events) {
             Ok(scenario) => self.judged(scenario, &own, &around, &mut document, &mut events),
             Err(faults) => {
-                events.extend(faults.iter().map(ToString::to_string));
+                document.risk_computed = false;
+                events.extend(
+                    faults
+                        .iter()
+                        .map(|fault| format!("no risk is computed: {fault}")),
+                );
                 None
             }
         };
@@ -290,6 +311,18 @@ impl Watch {
             events.push(format!("the last plan is not followed: {}", fault.found));
             self.is_off_plan = true;
         }
+        // a ship that was not heard since the last plan may be anywhere in its set, which has grown
+        for (target, ship) in scenario
+            .targets
+            .iter_mut()
+            .rev()
+            .zip(around.ships.iter().rev())
+        {
+            if let (Motion::Ship(track), Some(seen)) = (&mut target.motion, ship.track()) {
+                (track.kept_positions, track.kept_velocities) =
+                    (seen.kept_positions.clone(), seen.kept_velocities.clone());
+            }
+        }
         let left = [
             (
                 &scenario.memory.outside_velocities,
@@ -325,8 +358,9 @@ impl Watch {
                 target.sets().is_some() || is_dangerous(name) || is_known(name) || is_met(sets)
             })
             .collect();
-        if !wanted.contains(&true) {
-            (self.previous, self.last) = (None, None);
+        // a manoeuvre is finished, though the ship that it is for is gone
+        if !wanted.contains(&true) && self.previous.is_none() {
+            self.last = None;
             return None;
         }
         let elapsed = |last: &LastPlan| document.time_s - last.made;
@@ -346,7 +380,11 @@ impl Watch {
         self.previous =
             PreviousPlan::of(&run).filter(|_| has_manoeuvre || !document.dangerous.is_empty());
         self.last = None;
-        run.planned.outcome.plan()?;
+        if run.planned.outcome.plan().is_none() {
+            let why = run.reason().unwrap_or_else(|| run.word());
+            events.push(format!("no plan: {why}"));
+            return Some(run);
+        }
         let plan = PlanDocument::of(&run);
         let legs = planned_legs(&plan).into_iter().map(|leg| WatchLegDocument {
             from_s: leg.motion.start_time,
@@ -393,6 +431,24 @@ impl Watch {
     }
 }
 
+/// Why own ship is not known.
+fn nowhere(picture: &Picture, plane: &Georeference, time: f64) -> String {
+    let why = match picture.own_place() {
+        None => "its position has not been heard".to_owned(),
+        Some(place) if plane.to_near_plane(place).is_none() => {
+            "it is more than 100 km from the origin of the scenario file".to_owned()
+        }
+        Some(_) => {
+            let most = picture.settings().own_stale_s;
+            format!(
+                "its position, or its course and speed, are older than {most} s at {}",
+                utc(time)
+            )
+        }
+    };
+    format!("no risk is computed, because own ship is not known: {why}")
+}
+
 /// The plan for the ships that are wanted, and for those whose sets with domain a plan without them would
 /// enter: the others do not bear on it. Says which it is for, too.
 fn planned(scenario: &Scenario, sets: &[TargetSets], mut wanted: Vec<bool>) -> (Run, Vec<bool>) {
@@ -434,6 +490,8 @@ fn goes_on(last: &LastPlan, scenario: &Scenario, sets: &[TargetSets], wanted: &[
         && !memory.remainder.is_empty()
         && new.next().is_none()
         && !enters.any(|enters| enters)
+        // the plan does not end in the meantime
+        && memory.remainder.last().is_some_and(|last| last.end_time() > REPLAN_S)
 }
 
 /// A scenario with some of its targets.
@@ -512,8 +570,7 @@ fn closest(scenario: &Scenario, own: &Own, track: &ShipTrack) -> (f64, f64) {
 }
 
 fn utc(time: f64) -> String {
-    let date = after(chrono::DateTime::UNIX_EPOCH, time);
-    date.map_or_else(String::new, |date| {
+    unix_time(time).map_or_else(String::new, |date| {
         date.format("%Y-%m-%dT%H:%M:%SZ").to_string()
     })
 }

@@ -13,7 +13,7 @@ const CAUTIONS: &str = "
 corridor.toml | cross-track limits | not kept, of 1 leg; the least are 93 m to port and 37 m
 isle-point.toml | 1 point of the map | skipped, as if it were water there
 pier-line.toml | 1 line of the map | point_radius_m
-dnv-not-under-command-from-port.json | Rule 18 | not applied to 'nuc', not under command by its navStatus
+dnv-not-under-command-from-port.json | Rule 18 | not applied to 'nuc', not under command by its status
 speed-limit.toml | speedMax | not kept: the plan makes 11.7 kn where a leg of the route allows 7.0 kn
 dnv-wide-turns.json | rules for 'target_ship_1' | not applied: explicit sets, which have no role
 commonocean-max-lateral-deviation.xml | maxLateralDeviation | allows 50 m to the side

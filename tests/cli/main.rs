@@ -19,5 +19,6 @@ mod simulate;
 mod suite;
 mod tables;
 mod terminal;
+mod traffic;
 mod verdict;
 mod verify;

@@ -17,7 +17,7 @@ fn files() -> Vec<Value> {
     let ship = json!({
         "name": "ship", "position": position, "course_deg": 0.0, "speed_mps": 1.0,
         "length_m": 10.0, "beam_m": 2.0, "role": "give-way", "not_reported": ["size"],
-        "seen_from_s": 1.0,
+        "seen_from_s": 1.0, "position_set": { "vertices_m": [[0.0, 0.0]] }, "status": "moored",
         "domain": { "fore_m": 1.0, "aft_m": 1.0, "port_m": 1.0, "starboard_m": 1.0 },
     });
     let with = |table: &Value, key: &str, value: Value| {

@@ -21,10 +21,13 @@ pub struct WatchDocument {
     /// their domains.
     #[serde(default)]
     pub clear: usize,
-    /// Ships too far to matter.
+    /// Ships too far to come near within the horizon.
     pub beyond: usize,
     /// Ships in no set, and why: not heard for too long, or heard without a place.
     pub in_no_set: Vec<String>,
+    /// False where own ship is not known, or the scenario file does not fit its place: then there is no
+    /// word on risk.
+    pub risk_computed: bool,
     /// Ships with which there is risk of collision, the most urgent first.
     pub dangerous: Vec<DangerousShipDocument>,
     /// Where there is risk, and own ship's route is known.
@@ -53,7 +56,7 @@ pub struct OwnNowDocument {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DangerousShipDocument {
     pub name: String,
-    /// Of AIS, a radar target's number, or a name of Signal K.
+    /// MMSI, number of a radar target, or UUID of Signal K.
     pub identity: String,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub status: Option<Status>,

@@ -239,6 +239,16 @@ pub struct OwnNow {
     pub speed: f64,
 }
 
+/// The date and time of seconds of Unix time; `None` beyond the calendar.
+pub fn unix_time(seconds: f64) -> Option<DateTime<Utc>> {
+    after(DateTime::UNIX_EPOCH, seconds)
+}
+
+/// Seconds of Unix time of a date and time of RFC 3339; `None` for another text.
+pub fn unix_seconds(text: &str) -> Option<f64> {
+    Some(1e-3 * searoom_input::date_time(text)?.timestamp_millis() as f64)
+}
+
 /// The date and time so many seconds later, to a millisecond; `None` beyond the calendar.
 pub fn after(start: DateTime<Utc>, seconds: f64) -> Option<DateTime<Utc>> {
     let milliseconds = (1e3 * seconds).round() as i64;

@@ -146,7 +146,9 @@ pub(crate) fn hull(
     let (long, wide) = (bow + stern, port + starboard);
     if long == 0.0 || wide == 0.0 {
         notes.add(Note::NoSize);
-        return HullSet::unknown(length.max(long), beam.max(wide));
+        let mut known = HullSet::unknown(length.max(long), beam.max(wide));
+        (known.length.least, known.beam.least) = (long, wide);
+        return known;
     }
     if long < wide || long > LONGEST_M && bow < 511.0 && stern < 511.0 {
         notes.add(Note::WrongSize);

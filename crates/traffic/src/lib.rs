@@ -38,7 +38,8 @@ mod time;
 
 pub use counts::{Counts, Dropped};
 pub use picture::{
-    Listed, OwnPosition, Picture, PictureSettings, Reach, STALE, Ship, Taken, View, WITHOUT_PLACE,
+    Listed, OFF_PLANE, OwnPosition, Picture, PictureSettings, Reach, STALE, Ship, Taken, View,
+    WITHOUT_PLACE,
 };
 pub use reader::Reader;
 pub use report::{

@@ -189,7 +189,10 @@ impl fmt::Display for Identity {
         match self {
             Self::Mmsi(number) => write!(f, "MMSI {number:09}"),
             Self::Own => f.write_str("own ship"),
-            Self::Radar { number, .. } => write!(f, "radar target {number}"),
+            Self::Radar { source, number } => match source {
+                None => write!(f, "radar target {number}"),
+                Some(source) => write!(f, "radar target {number} of source {}", source.0),
+            },
             Self::Uuid(bytes) => {
                 f.write_str("UUID ")?;
                 bytes.iter().try_for_each(|byte| write!(f, "{byte:02x}"))

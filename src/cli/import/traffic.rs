@@ -5,7 +5,6 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
-use chrono::{DateTime, Utc};
 use searoom::frame::{
     Geographic, Georeference, Pose, Vector, heading_from_course_deg, mps_from_knots,
     radians_from_deg,
@@ -13,6 +12,7 @@ use searoom::frame::{
 use searoom::input::InputError;
 use searoom::report::write_atomically;
 use searoom::scenario::import::{OwnInTraffic, Situation};
+use searoom::scenario::unix_time;
 use searoom::traffic::{
     Feed, Identity, Own, PictureSettings, Reach, Settings, Surroundings, surroundings,
 };
@@ -33,6 +33,9 @@ const WITHIN_S: f64 = 1800.0;
 /// Own ship's greatest speed over that of the present.
 const FASTER: f64 = 1.2;
 
+/// Own ship is at rest below this speed, m/s.
+const AT_REST_MPS: f64 = 0.25;
+
 /// Seconds from which a fix of own ship is not of the present.
 const OWN_NOW_S: f64 = 2.0;
 
@@ -46,16 +49,35 @@ const OWN_AGE_S: f64 = 360.0;
 /// Reads the traffic until a time, and writes the scenario that own ship is in then.
 pub fn import(
     args: &ImportArgs,
-    at: DateTime<Utc>,
+    time: f64,
     route: &Path,
     output: &Output,
 ) -> anyhow::Result<ExitStatus> {
-    let time = 1e-3 * at.timestamp_millis() as f64;
-    let mut feed = Feed::new(&Settings::default(), 1, picture(args), time);
-    for file in &args.files {
-        if let Err(error) = read(file, &mut feed) {
+    let mut feed = Feed::new(&Settings::default(), args.files.len(), picture(args), time);
+    for (source, file) in args.files.iter().enumerate() {
+        if let Err(error) = read(file, source, &mut feed) {
             return Ok(output.refuse(&InputError::unread(&files::name(file), error)));
         }
+    }
+    for (source, column) in feed.missing_columns() {
+        let file = args
+            .files
+            .get(source)
+            .map(|file| files::name(file).display().to_string());
+        return Ok(output.refuse(&format_args!("{}: {column}", file.unwrap_or_default())));
+    }
+    if feed.reports() == 0 {
+        let names: Vec<String> = args
+            .files
+            .iter()
+            .map(|file| files::name(file).display().to_string())
+            .collect();
+        let lines = feed.counted().join(", ");
+        return Ok(output.refuse(&format_args!(
+            "{}: found no report of a ship ({lines}); allowed: sentences of NMEA 0183, CSV of AIS reports, \
+             or Signal K deltas",
+            names.join(", ")
+        )));
     }
     output.notes(None, &[("traffic".to_owned(), feed.counted())]);
     let place = match args.own_pose {
@@ -68,7 +90,7 @@ pub fn import(
     let earth =
         Georeference::new(place).context("own ship: found a pole; allowed: lower latitudes")?;
     let mut around = surroundings(feed.picture(), time, &earth, Reach::ALL);
-    let own = match args.own_pose {
+    let mut own = match args.own_pose {
         Some([.., course_deg, knots]) => Own {
             name: None,
             pose: Pose::new(Vector::zeros(), heading_from_course_deg(course_deg)),
@@ -82,6 +104,10 @@ pub fn import(
             None => return Ok(output.refuse(&nowhere(args))),
         },
     };
+    // the least step of a speed is no way
+    if own.speed < AT_REST_MPS {
+        own.speed = 0.0;
+    }
     let fastest = own.speed.max(args.assumed.own_speed_mps.unwrap_or(0.0));
     let reach = Reach {
         own_m: WITHIN_S * FASTER * fastest + NEAR_M,
@@ -91,6 +117,13 @@ pub fn import(
         own: Some(own.clone()),
         ..surroundings(feed.picture(), time, &earth, reach)
     };
+    if own.radius_m > 0.0 {
+        let statement = format!(
+            "taken to be where its fix has it, which is right to {:.0} m",
+            own.radius_m
+        );
+        around.remarks.note("own ship", statement);
+    }
     if own.age_s > OWN_NOW_S {
         let statement = format!(
             "its last fix is {:.0} s old; taken to have held course and speed since",
@@ -98,7 +131,7 @@ pub fn import(
         );
         around.remarks.note("own ship", statement);
     }
-    let written = write(args, (at, route), earth, &own, around, output)?;
+    let written = write(args, (time, route), earth, &own, around, output)?;
     Ok(written.unwrap_or_else(|refused| output.refused(&refused)))
 }
 
@@ -120,20 +153,19 @@ fn picture(args: &ImportArgs) -> PictureSettings {
     }
 }
 
-fn read(file: &Path, feed: &mut Feed) -> std::io::Result<()> {
-    let mut source: Box<dyn Read> = match files::is_stdin(file) {
+fn read(file: &Path, source: usize, feed: &mut Feed) -> std::io::Result<()> {
+    let mut bytes: Box<dyn Read> = match files::is_stdin(file) {
         true => Box::new(std::io::stdin()),
         false => Box::new(File::open(file)?),
     };
     let mut chunk = vec![0; CHUNK];
     loop {
-        match source.read(&mut chunk)? {
+        match bytes.read(&mut chunk)? {
             0 => break,
-            read => feed.recorded(0, &chunk[..read]),
+            read => feed.recorded(source, &chunk[..read]),
         }
     }
-    // a file may end without the end of its line, and another one follows
-    feed.recorded(0, b"\n");
+    feed.finish(source);
     Ok(())
 }
 
@@ -153,7 +185,7 @@ fn nowhere(args: &ImportArgs) -> String {
 
 fn write(
     args: &ImportArgs,
-    (at, route): (DateTime<Utc>, &Path),
+    (time, route): (f64, &Path),
     earth: Georeference,
     own: &Own,
     around: Surroundings,
@@ -170,12 +202,15 @@ fn write(
     };
     let file = args.out.join(format!("{stem}.toml"));
     let beside = link(route, &args.out)?;
-    let date = at.format("%Y-%m-%d %H:%M:%S UTC");
+    let at = unix_time(time);
+    let date = at.map_or_else(String::new, |at| {
+        at.format("%Y-%m-%d %H:%M:%S UTC").to_string()
+    });
     let name = own.name.as_ref().unwrap_or(&stem);
     let name = format!("{name}, {date}");
     let situation = Situation::of_traffic(
         &name,
-        Some(at),
+        at,
         earth,
         &OwnInTraffic {
             pose: own.pose,

@@ -18,7 +18,8 @@ use crate::fields::metres;
 use crate::report::{Fix, HullSet, Identity, Kind, Name, Note, Notes, PositionSet, Report, Status};
 pub use own::OwnPosition;
 use own::OwnShip;
-pub use ship::{Listed, STALE, Ship, WITHOUT_PLACE};
+use ship::is_no_ship;
+pub use ship::{Listed, OFF_PLANE, STALE, Ship, WITHOUT_PLACE};
 use track::Track;
 
 /// How ships may have moved since their last fix, what is assumed of them from now on, and what is kept.
@@ -52,6 +53,8 @@ pub struct PictureSettings {
     pub coarse_s: f64,
     /// Age from which own ship's position is too old, seconds.
     pub own_stale_s: f64,
+    /// How far own ship's middle may be from its antenna where it does not send its size, metres.
+    pub own_reach_m: f64,
     /// True where own ship is taken to be where its last fix has it, so that its error is not beside the others'
     /// sets.
     pub own_is_exact: bool,
@@ -77,6 +80,7 @@ impl Default for PictureSettings {
             forgotten_s: 3600.0,
             coarse_s: 180.0,
             own_stale_s: 10.0,
+            own_reach_m: 0.0,
             own_is_exact: false,
             most_ships: 100_000,
             own: None,
@@ -95,8 +99,6 @@ searoom_geometry::words! {
         Own => "own ship's",
         /// Own ship heard back as another ship.
         Echo => "echoes of own ship",
-        /// Another ship that says that it is own ship.
-        SecondOwn => "of a second own ship",
         /// A fix that is not newer than the one that is known.
         NotNewer => "fixes that are not newer",
         /// A long-range report beside a fresh finer one.
@@ -122,6 +124,9 @@ const WRONG_CLOCK_S: f64 = 60.0;
 /// Share of the identities that are forgotten at once where there are too many.
 const FORGOTTEN_SHARE: f64 = 0.1;
 
+/// Metres from own ship within which ships are the last to be forgotten.
+const NEAR_M: f64 = 30_000.0;
+
 /// Seconds between two searches for ships to be forgotten.
 const SWEEP_S: f64 = 60.0;
 
@@ -139,6 +144,8 @@ struct Known {
     tracks: Vec<Track>,
     /// Places that it has had, so that each keeps its number.
     places: u32,
+    /// Places that were forgotten because there were too many.
+    left: u64,
 }
 
 /// The last known state of own ship and of every ship that was heard.
@@ -272,6 +279,8 @@ impl Picture {
             fix
         });
         if let Some(what) = self.own.take(report, fix) {
+            // what was heard of it before was no other ship
+            self.known.remove(&report.identity);
             return what;
         }
         if !self.known.contains_key(&report.identity)
@@ -294,16 +303,27 @@ impl Picture {
         known.place(fix, position, report.notes, &self.settings)
     }
 
+    /// Forgets what is dated after a time, because the clock was wrong until then.
+    pub fn set_back(&mut self, now: f64) {
+        for known in self.known.values_mut() {
+            known.heard = known.heard.min(now);
+            (known.tracks).retain(|track| track.fix.time.least <= now + AHEAD_S);
+        }
+        self.own.set_back(now + AHEAD_S);
+        self.swept = self.swept.min(now);
+    }
+
     /// Forgets ships that were not heard for long.
     fn forget(&mut self, now: f64) {
         let (before, longest) = (self.known.len(), self.settings.forgotten_s);
         self.known.retain(|_, known| now - known.heard <= longest);
-        for known in self.known.values_mut() {
-            known
-                .tracks
-                .retain(|track| now - track.fix.time.most <= longest);
-        }
         self.forgotten += (before - self.known.len()) as u64;
+        for known in self.known.values_mut() {
+            let places = known.tracks.len();
+            (known.tracks).retain(|track| now - track.fix.time.most <= longest);
+            self.forgotten += (places - known.tracks.len()) as u64;
+            self.crowded_out += std::mem::take(&mut known.left);
+        }
     }
 
     /// Forgets a share of the ships: those heard longest ago, and of these the farthest from own ship first.
@@ -313,12 +333,25 @@ impl Picture {
             (Some(own), Some(track)) => metres(own, track.position.at).norm(),
             _ => f64::INFINITY,
         };
-        let mut ages: Vec<(i64, f64, Identity)> = self
+        let mut ages: Vec<(bool, i64, f64, Identity)> = self
             .known
             .iter()
-            .map(|(identity, known)| ((known.heard / SWEEP_S) as i64, -far(known), *identity))
+            .map(|(identity, known)| {
+                let far = far(known);
+                (
+                    far <= NEAR_M,
+                    (known.heard / SWEEP_S) as i64,
+                    -far,
+                    *identity,
+                )
+            })
             .collect();
-        ages.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        ages.sort_by(|a, b| {
+            (a.0.cmp(&b.0))
+                .then(a.1.cmp(&b.1))
+                .then(a.2.total_cmp(&b.2))
+                .then(a.3.cmp(&b.3))
+        });
         let leave = ((FORGOTTEN_SHARE * ages.len() as f64) as usize).max(1);
         for (.., identity) in &ages[..leave.min(ages.len())] {
             self.known.remove(identity);
@@ -360,15 +393,16 @@ impl Picture {
             }
             for track in &known.tracks {
                 let age = time - track.fix.time.least;
-                if age > self.settings.stale_s {
+                if !(age <= self.settings.stale_s) {
                     view.listed.push(known.listed(*identity, ship::STALE, time));
-                } else if let Some(ship) =
-                    known.ship(*identity, track, (time, beside), plane, &self.settings)
-                    && ship.is_within(about, reach)
-                {
-                    view.ships.push(ship);
-                } else {
-                    view.beyond += 1;
+                    continue;
+                }
+                match known.ship(*identity, track, (time, beside), plane, &self.settings) {
+                    None => view
+                        .listed
+                        .push(known.listed(*identity, ship::OFF_PLANE, time)),
+                    Some(ship) if ship.is_within(about, reach) => view.ships.push(ship),
+                    Some(_) => view.beyond += 1,
                 }
             }
         }
@@ -388,14 +422,16 @@ impl Known {
             heard: f64::NEG_INFINITY,
             tracks: Vec::new(),
             places: 0,
+            left: 0,
         }
     }
 
     /// What a report says beside its fix.
     fn learn(&mut self, report: &Report, now: f64) {
         self.heard = self.heard.max(now);
-        // a long-range message does not tell the class
-        if report.kind != Kind::Ship {
+        // a long-range message does not tell the class, and a number that a ship's position had is a ship's
+        let is_ship = !self.tracks.is_empty() && self.is_no_ship().is_none();
+        if report.kind != Kind::Ship && !(is_ship && is_no_ship(report.kind).is_some()) {
             self.kind = report.kind;
         }
         if let Some(hull) = report.hull {
@@ -420,12 +456,10 @@ impl Known {
     ) -> Taken {
         let fastest = self.fastest(settings);
         let new = Track::new(fix, position, notes);
-        let near = |track: &Track| new.apart(track, fastest);
-        let at = self.tracks.iter().map(near).enumerate();
-        let nearest = at.min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((index, apart)) = nearest
-            && apart <= 0.0
-        {
+        let may_be = (self.tracks.iter().enumerate())
+            .filter(|(_, track)| new.apart(track, fastest) <= 0.0)
+            .map(|(index, track)| (index, metres(track.position.at, position.at).norm()));
+        if let Some((index, _)) = may_be.min_by(|a, b| a.1.total_cmp(&b.1)) {
             let track = &mut self.tracks[index];
             if !(new.fix.time.most > track.fix.time.most) {
                 return Taken::NotNewer;
@@ -446,6 +480,7 @@ impl Known {
                 .min_by(|a, b| a.1.fix.time.most.total_cmp(&b.1.fix.time.most));
             let oldest = oldest.map_or(0, |(index, _)| index);
             self.tracks.remove(oldest);
+            self.left += 1;
         }
         let mut track = new;
         track.number = self.places;
@@ -469,7 +504,11 @@ impl Known {
     }
 
     fn is_craft(&self) -> bool {
-        matches!(self.kind, Kind::ClassB | Kind::Craft | Kind::Distress)
+        // a ship of an unknown class may be a craft
+        matches!(
+            self.kind,
+            Kind::ClassB | Kind::Craft | Kind::Distress | Kind::Radar | Kind::Ship
+        )
     }
 
     fn fastest(&self, settings: &PictureSettings) -> f64 {

@@ -3,6 +3,7 @@
 use searoom_geometry::frame::{Geographic, Georeference, Pose, Vector, direction};
 
 use super::{PictureSettings, Taken, ship};
+use crate::fields::metres;
 use crate::report::{
     Directions, Fix, HullSet, Identity, Interval, Name, Note, PositionSet, Report, VelocitySet,
 };
@@ -36,6 +37,10 @@ pub(super) struct OwnShip {
     name: Option<Name>,
 }
 
+/// How far from own ship's place a report of it may be, metres, and faster than any ship, m/s.
+const NEAR_M: f64 = 1000.0;
+const FASTEST_MPS: f64 = 30.0;
+
 /// Most identities of own ship that are kept.
 const MOST_IDENTITIES: usize = 4;
 
@@ -66,31 +71,54 @@ impl OwnShip {
 
     /// What a report is to own ship; `None` for one of another ship.
     pub fn take(&mut self, report: &Report, fix: Option<Fix>) -> Option<Taken> {
-        let is_given = self.given == Some(report.identity);
+        let first = self.identities.first();
+        let is_first = first == Some(&report.identity);
         if !report.is_own {
-            if is_given {
-                self.learn(report, fix);
-                return Some(Taken::Own);
-            }
-            return (self.identities.contains(&report.identity)).then_some(Taken::Echo);
+            return match self.given {
+                Some(given) if given == report.identity && self.may_be_at(fix) => {
+                    self.learn(report, fix);
+                    Some(Taken::Own)
+                }
+                // another ship may have the same number
+                _ if is_first && self.may_be_at(fix) => Some(Taken::Echo),
+                _ => None,
+            };
         }
         if let Identity::Mmsi(_) = report.identity
-            && !self.identities.contains(&report.identity)
+            && !is_first
         {
-            let is_first = self.identities.is_empty();
-            if self.identities.len() < MOST_IDENTITIES {
+            let is_second = first.is_some();
+            if !self.identities.contains(&report.identity)
+                && self.identities.len() < MOST_IDENTITIES
+            {
                 self.identities.push(report.identity);
             }
-            if !is_first {
-                return Some(Taken::SecondOwn);
+            if is_second {
+                // another ship, whatever it says
+                return None;
             }
-        } else if matches!(report.identity, Identity::Mmsi(_))
-            && self.identities.first() != Some(&report.identity)
-        {
-            return Some(Taken::SecondOwn);
         }
         self.learn(report, fix);
         Some(Taken::Own)
+    }
+
+    /// True for a fix that is not far from where own ship is known to be.
+    fn may_be_at(&self, fix: Option<Fix>) -> bool {
+        let place = fix.and_then(|fix| Some((fix.time.most, fix.position?.at)));
+        match (place, &self.place) {
+            (Some((time, at)), Some((then, own))) => {
+                let way = FASTEST_MPS * (time - then.most).abs();
+                metres(own.at, at).norm() <= NEAR_M + own.radius_m + way
+            }
+            _ => true,
+        }
+    }
+
+    /// Forgets what is dated after a time.
+    pub fn set_back(&mut self, time: f64) {
+        self.place = self.place.filter(|(then, _)| then.least <= time);
+        self.velocity = self.velocity.filter(|(then, _)| *then <= time);
+        self.heading = self.heading.filter(|(then, _)| *then <= time);
     }
 
     fn learn(&mut self, report: &Report, fix: Option<Fix>) {
@@ -156,7 +184,8 @@ impl OwnShip {
             + 0.5 * acceleration * age_s * age_s;
         let antenna = plane.to_near_plane(place.at)? + moved;
         let (middle, beside) = match &self.hull {
-            None => (Vector::zeros(), 0.0),
+            // the antenna may be anywhere on the hull
+            None => (Vector::zeros(), settings.own_reach_m),
             Some(hull) => {
                 let lies = self.heading.filter(|(then, _)| is_fresh(*then));
                 let lies = lies.map_or(ahead, |(_, heading)| heading);

@@ -19,6 +19,9 @@ pub const WITHOUT_PLACE: &str = "heard without a place";
 /// Why a ship is in no set.
 pub const STALE: &str = "not heard for too long";
 
+/// Why a ship is in no set.
+pub const OFF_PLANE: &str = "more than 100 km from the origin of the plane";
+
 /// A hull may swing about its heading by this angle while the ship lies, radians: 5°.
 const SWING: f64 = PI / 36.0;
 
@@ -88,16 +91,21 @@ fn longest(type_code: Option<u8>) -> f64 {
     }
 }
 
+/// What a station is that is no ship.
+pub(super) fn is_no_ship(kind: Kind) -> Option<&'static str> {
+    match kind {
+        Kind::BaseStation => Some("a station ashore"),
+        Kind::Aircraft => Some("an aircraft"),
+        Kind::VirtualMark => Some("a mark that is not in the water"),
+        _ => None,
+    }
+}
+
 impl Known {
     /// What an identity is that is not a ship; `None` for a ship, and for a mark, which lies in the way as
     /// one.
     pub(super) fn is_no_ship(&self) -> Option<&'static str> {
-        match self.kind {
-            Kind::BaseStation => Some("a station ashore"),
-            Kind::Aircraft => Some("an aircraft"),
-            Kind::VirtualMark => Some("a mark that is not in the water"),
-            _ => None,
-        }
+        is_no_ship(self.kind)
     }
 
     pub(super) fn listed(&self, identity: Identity, why: &'static str, time: f64) -> Listed {
@@ -132,7 +140,7 @@ impl Known {
             Kind::Mark if self.type_code.is_some_and(|code| (20..=30).contains(&code)) => 10.0,
             _ => longest(self.type_code),
         };
-        match notes.has(Note::NoSize) && hull.length.most > most {
+        match notes.has(Note::NoSize) && hull.length.most > most && hull.length.least <= most {
             true => (HullSet::unknown(most, BEAM_SHARE * most), notes),
             false => (hull, notes),
         }
@@ -156,7 +164,11 @@ impl Known {
         // a ship that is slow drifts, or gets under way
         let drift = match (is_fixed, is_lying, fix.velocity.speed.most) {
             (true, ..) => Some(0.0),
-            (_, true, _) => Some(settings.lying_mps),
+            (_, true, _) => Some(
+                track
+                    .lying_mps()
+                    .clamp(settings.lying_mps, settings.drift_mps),
+            ),
             (.., most) if most <= settings.rest_mps => Some(settings.drift_mps.max(most)),
             _ => None,
         };
@@ -191,10 +203,22 @@ impl Known {
         let places = (place.outer().rotated(turned).minkowski_sum(&motion))
             .minkowski_sum(&centre)
             .minkowski_sum(&outer_disc(beside, 0.0));
-        // about the middle of the places
-        let middle = 0.5
-            * (Vector::new(places.support(Vector::x()), places.support(Vector::y()))
-                - Vector::new(places.support(-Vector::x()), places.support(-Vector::y())));
+        // where it is by dead reckoning: its course leads from there
+        let middle_age = 0.5 * (ages.least + ages.most);
+        let is_steady =
+            drift.is_none() && velocity.course.half < FRAC_PI_2 && velocity.speed.most.is_finite();
+        let reckoned = match is_steady {
+            true => {
+                let speed = 0.5 * (velocity.speed.least + velocity.speed.most);
+                direction(velocity.course.middle) * (speed * middle_age)
+            }
+            false => Vector::zeros(),
+        };
+        let reckoned = reckoned + centre.centroid();
+        let middle = match places.contains(reckoned) {
+            true => reckoned,
+            false => places.centroid(),
+        };
         let (speed, speed_spread, course, course_spread) = match drift {
             Some(drift) => (0.0, drift, pose_heading, PI),
             None => under_way(&velocity, (pose_heading, fastest), settings),
@@ -203,7 +227,12 @@ impl Known {
             Some(_) => [0.0; 2],
             None => expected_turn(fix.turn_rate, settings.turning_s),
         };
-        let swing = if is_fixed { 0.0 } else { SWING };
+        let swing = match (is_fixed, drift) {
+            (true, _) => 0.0,
+            (false, Some(_)) => SWING,
+            // the hull turns with the course
+            (false, None) => settings.course_spread.max(SWING),
+        };
         let heading_spread = match headings.half < PI {
             true => {
                 wrap(headings.middle - course).abs() + headings.half + swing + port.max(starboard)

@@ -112,6 +112,14 @@ impl Track {
         }
     }
 
+    /// Bound of the mean speed of a ship at rest since it came to rest, m/s.
+    pub fn lying_mps(&self) -> f64 {
+        self.rest.map_or(f64::INFINITY, |(since, first)| {
+            let moved = metres(first, self.position.at).norm();
+            (moved + 2.0 * self.reach()) / (self.fix.time.most - since)
+        })
+    }
+
     /// True where the ship has been at one place for a time in seconds. Two fixes apart in time show that,
     /// because some units send a speed of 0 where they know none.
     pub fn is_lying(&self, rest_mps: f64, lying_s: f64) -> bool {
