@@ -68,9 +68,22 @@ pub fn watch(args: &WatchArgs, output: &Output) -> anyhow::Result<ExitStatus> {
             let found = "a file beside another source";
             bail!("--listen: found {found}; allowed: one file alone, or sources that are live");
         }
+        _ if args.speed != 1.0 => bail!(
+            "--speed: found {}; allowed: with one file alone",
+            args.speed
+        ),
         sources => live(&mut view, sources, &interrupted)?,
     }
-    output.notes(None, &[("traffic".to_owned(), view.feed.counted())]);
+    let counted = view.feed.counted();
+    if view.feed.reports() == 0 && matches!(args.listen.as_slice(), [Source::File(_)]) {
+        let name = args.listen[0].name();
+        let counted = counted.join(", ");
+        return Ok(output.refuse(&format_args!(
+            "{name}: found no report of a ship ({counted}); allowed: sentences of NMEA 0183, CSV of AIS \
+             reports, or Signal K deltas"
+        )));
+    }
+    output.notes(None, &[("traffic".to_owned(), counted)]);
     Ok(view.status)
 }
 
@@ -103,6 +116,12 @@ impl Viewer<'_> {
                 .output
                 .screen(&watch_text(&moment.document, self.output.display)),
         };
+        if moment.document.took_s > self.args.every_s {
+            let took = moment.document.took_s;
+            self.events.push(format!(
+                "the last moment took {took:.1} s, more than there is between two"
+            ));
+        }
         let kept = self.keep_plan(&moment)?;
         self.status = self.status.max(shown).max(kept);
         Ok(())
@@ -183,6 +202,7 @@ fn live(view: &mut Viewer, sources: &[Source], interrupted: &AtomicBool) -> anyh
     for (index, source) in sources.iter().enumerate() {
         (source.clone().open(index, sender.clone()))
             .with_context(|| format!("--listen {}", source.name()))?;
+        view.events.push(format!("listening: {}", source.name()));
     }
     drop(sender);
     let clock = Clock::begun();

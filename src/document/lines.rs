@@ -49,6 +49,20 @@ pub(crate) fn verdict_line(plan: &PlanDocument) -> String {
     in_brackets(&printable(&plan.verdict), &verdict_parts(plan))
 }
 
+/// What may happen after the end of a plan, which claims nothing then.
+pub(crate) fn warnings(plan: &PlanDocument) -> Vec<String> {
+    let cost = plan.cost.as_ref();
+    let is_met = cost.filter(|cost| cost.hold_clearance_m.is_some_and(|after| after < 0.0));
+    let warning = is_met.map(|cost| {
+        let end = match cost.delay_s.is_some() {
+            true => "arrival",
+            false => "the end",
+        };
+        format!("a target may run into own ship where it lies after {end}")
+    });
+    warning.into_iter().collect()
+}
+
 /// The parts that [`verdict_line`] puts in brackets behind the outcome.
 pub(crate) fn verdict_parts(plan: &PlanDocument) -> Vec<String> {
     let mut all = Vec::new();
@@ -665,11 +679,8 @@ fn cost_lines(plan: &PlanDocument, cost: &CostDocument, times: Times, add: &mut 
         let hold = cost.arrival_hold_s;
         let text = format!("{clearance}; after {end} {after} m within {hold} s");
         add("clearance", text);
-        if cost.hold_clearance_m.is_some_and(|after| after < 0.0) {
-            add(
-                "warning",
-                format!("a target may run into own ship where it lies after {end}"),
-            );
+        for warning in warnings(plan) {
+            add("warning", warning);
         }
     }
     if let Some((name, time)) = met_at_rest(plan) {

@@ -17,6 +17,7 @@ pub(crate) use encounter::{chart_role, encounters};
 pub(crate) use lines::escape_words;
 pub(crate) use lines::{
     TIME_LINE, headline, in_brackets, met, passing, plan_lines, verdict_line, verdict_parts,
+    warnings,
 };
 pub use plan::legs::planned_legs;
 pub(crate) use plan::legs::{CLOSEST, longest};

@@ -2,10 +2,14 @@
 
 use super::table::{Display, Grid, plain};
 use crate::document::{DangerousShipDocument, WatchDocument, WatchPlanDocument};
+use crate::frame::knots_from_mps;
 use crate::text::{counted, knots, tenths};
 
 /// Metres of a nautical mile.
 const MILE_M: f64 = 1852.0;
+
+/// What is not known, or does not happen.
+const NONE: &str = "–";
 
 /// Most legs of a plan that are shown: what is to be done now, and then.
 const LEGS: usize = 3;
@@ -17,7 +21,7 @@ pub fn watch_text(moment: &WatchDocument, display: Display) -> String {
         moment
             .in_no_set
             .iter()
-            .map(|caution| format!("  {caution}")),
+            .map(|caution| format!("  in no set: {caution}")),
     );
     lines.extend(moment.events.iter().map(|event| format!("  {event}")));
     if !moment.dangerous.is_empty() {
@@ -76,11 +80,11 @@ fn table(ships: &[DangerousShipDocument], display: Display) -> String {
             status,
             format!("{:.2}", ship.range_m / MILE_M),
             course(ship.bearing_deg),
-            course(ship.course_deg),
-            tenths(ship.speed_mps / 0.514_444),
-            format!("{:.2}", ship.cpa_m / MILE_M),
-            clock(ship.tcpa_s),
-            ship.enters_set_s.map_or("–".to_owned(), clock),
+            ship.course_deg.map_or(NONE.to_owned(), course),
+            (ship.speed_mps).map_or(NONE.to_owned(), |speed| tenths(knots_from_mps(speed))),
+            (ship.cpa_m).map_or(NONE.to_owned(), |metres| format!("{:.2}", metres / MILE_M)),
+            ship.tcpa_s.map_or(NONE.to_owned(), clock),
+            ship.enters_set_s.map_or(NONE.to_owned(), clock),
             format!("{:.2}", ship.risk),
             ship.role.clone(),
             format!("{:.0}", ship.age_s),
@@ -94,6 +98,17 @@ fn table(ships: &[DangerousShipDocument], display: Display) -> String {
 fn legs(plan: &WatchPlanDocument) -> Vec<String> {
     let kept = if plan.keeps_plan { ", goes on" } else { "" };
     let mut lines = vec![format!("plan: {}{kept}", plan.verdict)];
+    if !plan.arrives {
+        lines.push(format!(
+            "  does not arrive: it ends in {}, and nothing is claimed after that",
+            clock(plan.ends_s)
+        ));
+    }
+    lines.extend(
+        plan.warnings
+            .iter()
+            .map(|warning| format!("  warning: {warning}")),
+    );
     for leg in plan.legs.iter().take(LEGS) {
         let why = leg
             .because_of

@@ -60,7 +60,7 @@ impl Source {
             .rsplit_once(':')
             .is_some_and(|(_, port)| port.parse::<u16>().is_ok());
         match scheme {
-            "udp" if address.parse::<u16>().is_ok() => {
+            "udp" if address.parse::<u16>().is_ok_and(|port| port > 0) => {
                 Some(Self::Udp(format!("127.0.0.1:{address}")))
             }
             "udp" if has_port => Some(Self::Udp(address.to_owned())),

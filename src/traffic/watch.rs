@@ -10,15 +10,15 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use searoom_traffic::{Identity, Note, Picture, Reach, Ship};
+use searoom_traffic::{Identity, Note, Picture, Reach, Ship, Taken};
 
 use super::situation::{Own, Surroundings, surroundings};
 use crate::colregs::Role;
-use crate::document::verdict_line;
 use crate::document::{
     DangerousShipDocument, OwnNowDocument, PlanDocument, WatchDocument, WatchLegDocument,
     WatchPlanDocument, planned_legs,
 };
+use crate::document::{verdict_line, warnings};
 use crate::frame::{Georeference, Pose, course_deg_from_heading, direction, heading_of};
 use crate::obstacle::SpaceTimeObstacle;
 use crate::pipeline::{self, Run, TargetSets};
@@ -62,6 +62,8 @@ pub struct Watch {
     /// True where own ship did not follow the last plan.
     is_off_plan: bool,
     names: HashMap<(Identity, u32), String>,
+    /// Positions of own ship that contradict the one that is taken, so far.
+    elsewhere: u64,
 }
 
 /// The mission from where own ship was when it began.
@@ -91,6 +93,7 @@ impl LastPlan {
         let left = legs.filter(|leg| leg.until_s > elapsed);
         WatchPlanDocument {
             made_s_ago: elapsed,
+            ends_s: (self.document.ends_s - elapsed).max(0.0),
             legs: left
                 .map(|leg| WatchLegDocument {
                     from_s: (leg.from_s - elapsed).max(0.0),
@@ -145,6 +148,7 @@ impl Watch {
             last: None,
             is_off_plan: false,
             names: HashMap::new(),
+            elsewhere: 0,
         })
     }
 
@@ -162,6 +166,13 @@ impl Watch {
         };
         let mut around = surroundings(picture, time, &self.plane, reach);
         let mut events = Vec::new();
+        let elsewhere = picture.taken(Taken::OwnElsewhere);
+        if elsewhere > self.elsewhere {
+            self.elsewhere = elsewhere;
+            events.push(
+                "own ship is also reported where it cannot be; the first place is taken".to_owned(),
+            );
+        }
         let own = around.own.take();
         let mut document = WatchDocument {
             time: utc(time),
@@ -170,7 +181,9 @@ impl Watch {
             ships: around.ships.len(),
             clear: 0,
             beyond: around.beyond,
-            in_no_set: around.remarks.cautions.clone(),
+            in_no_set: (around.remarks.cautions.iter())
+                .map(|caution| caution.trim_start_matches("in no set: ").to_owned())
+                .collect(),
             risk_computed: own.is_some(),
             dangerous: Vec::new(),
             plan: None,
@@ -213,7 +226,7 @@ impl Watch {
             course_deg: course_deg_from_heading(own.pose.heading),
             speed_mps: own.speed,
             radius_m: own.radius_m,
-            age_s: own.age_s,
+            age_s: own.age_s.max(0.0),
         }
     }
 
@@ -341,10 +354,11 @@ impl Watch {
         let mut dangers: Vec<DangerousShipDocument> = (around.ships.iter().zip(&sets[first..]))
             .filter_map(|(ship, sets)| dangerous(&scenario, own, ship, sets))
             .collect();
+        let closest_at = |ship: &DangerousShipDocument| ship.tcpa_s.unwrap_or(0.0);
         let urgency = |ship: &DangerousShipDocument| ship.enters_set_s.unwrap_or(f64::INFINITY);
         dangers.sort_by(|a, b| {
             (urgency(a).total_cmp(&urgency(b)))
-                .then(a.tcpa_s.total_cmp(&b.tcpa_s))
+                .then(closest_at(a).total_cmp(&closest_at(b)))
                 .then(a.identity.cmp(&b.identity))
         });
         document.dangerous = dangers;
@@ -397,19 +411,26 @@ impl Watch {
         let shown = WatchPlanDocument {
             verdict: verdict_line(&plan),
             safe: plan.is_safe(),
+            arrives: run.arrives(),
+            ends_s: plan
+                .motions()
+                .last()
+                .map_or(0.0, |last| last.motion.end_time()),
+            warnings: warnings(&plan),
+            planned_for: (scenario.targets.iter().zip(&is_planned_for))
+                .filter(|(_, is)| **is)
+                .map(|(target, _)| target.name.clone())
+                .collect(),
             keeps_plan: run.planned.is_remainder(),
             made_s_ago: 0.0,
             legs: legs.collect(),
         };
         document.plan = Some(shown.clone());
-        let names = scenario.targets.iter().zip(&is_planned_for);
+        let shown_for = shown.planned_for.iter().cloned().collect();
         self.last = Some(LastPlan {
             made: document.time_s,
             document: shown,
-            targets: names
-                .filter(|(_, is)| **is)
-                .map(|(target, _)| target.name.clone())
-                .collect(),
+            targets: shown_for,
             clear: document.clear,
         });
         Some(run)
@@ -530,7 +551,10 @@ fn dangerous(
         return None;
     }
     let between = track.pose.position - own.pose.position;
-    let (cpa_m, tcpa_s) = closest(scenario, own, track);
+    // a ship that sends no speed, and does not lie, has none here
+    let unsent = [Note::NoSpeed, Note::ZerosForUnknown];
+    let is_unknown = !ship.is_lying && unsent.iter().any(|note| ship.notes.has(*note));
+    let approach = (!is_unknown).then(|| closest(scenario, own, track));
     let notes = ship.notes.iter().filter(|note| *note != Note::Raim);
     Some(DangerousShipDocument {
         name: ship.target.name.clone(),
@@ -538,10 +562,10 @@ fn dangerous(
         status: ship.status,
         range_m: between.norm(),
         bearing_deg: course_deg_from_heading(heading_of(between)),
-        course_deg: course_deg_from_heading(track.pose.heading),
-        speed_mps: track.speed,
-        cpa_m,
-        tcpa_s,
+        course_deg: (!is_unknown).then(|| course_deg_from_heading(track.pose.heading)),
+        speed_mps: (!is_unknown).then_some(track.speed),
+        cpa_m: approach.map(|(metres, _)| metres),
+        tcpa_s: approach.map(|(_, seconds)| seconds),
         enters_set_s,
         risk: match enters_set_s {
             Some(_) => sets.hard.peak_risk(&held).risk,

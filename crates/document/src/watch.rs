@@ -64,11 +64,17 @@ pub struct DangerousShipDocument {
     pub range_m: f64,
     /// From true north.
     pub bearing_deg: f64,
-    pub course_deg: f64,
-    pub speed_mps: f64,
-    /// Between the hulls when the middles are closest, and when that is, if both hold course and speed.
-    pub cpa_m: f64,
-    pub tcpa_s: f64,
+    /// Absent where the ship does not send its speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub course_deg: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_mps: Option<f64>,
+    /// Between the hulls when the middles are closest, and when that is, if both hold course and speed;
+    /// absent where the ship does not send its speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cpa_m: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tcpa_s: Option<f64>,
     /// When own ship enters the ship's set if it holds course and speed; absent where it does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub enters_set_s: Option<f64>,
@@ -87,8 +93,16 @@ pub struct DangerousShipDocument {
 pub struct WatchPlanDocument {
     /// In words.
     pub verdict: String,
-    /// True where it is verified and safe.
+    /// True where it is verified and safe until it ends.
     pub safe: bool,
+    /// True where it leads to the end of the mission within the horizon.
+    pub arrives: bool,
+    /// When it ends, from now on.
+    pub ends_s: f64,
+    /// What the plan's own document warns of, in words.
+    pub warnings: Vec<String>,
+    /// Names of the targets that it is made for; it is clear of the others.
+    pub planned_for: Vec<String>,
     /// True where it is what is left of the plan before.
     pub keeps_plan: bool,
     /// How old it is: it is made anew every 10 s, and at once where a ship comes near that it is not for, or

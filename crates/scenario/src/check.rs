@@ -167,7 +167,8 @@ fn scenario(mut root: Table, folder: &Path, now: Option<&OwnNow>) -> Option<Scen
     let start = start.unwrap_or(mission.date);
     let (targets, known): (Vec<Target>, Vec<TargetMemory>) = targets?.into_iter().unzip();
     let known_any = known.iter().any(|known| known.role.is_some());
-    let tracked = targets.iter().any(|target| target.ship().is_some());
+    // own ship at sea is among ships that the file does not have
+    let tracked = now.is_some() || targets.iter().any(|target| target.ship().is_some());
     Some(Scenario {
         time: time?,
         start,
@@ -445,9 +446,20 @@ fn mission(mut table: Table, reading: &Reading, remarks: &mut Remarks) -> Option
         alternatives(field, plane)
     });
     let from = table.take("from_waypoint");
-    let from_read = from.as_ref().map(first_waypoint);
+    let from_read = from
+        .as_ref()
+        .map(|field| field.whole_number(FROM_WAYPOINT).map(First::Waypoint));
+    let nearest = table.take("from_nearest");
+    let is_nearest = nearest.as_ref().and_then(Field::truth) == Some(true);
+    if let (Some(field), true) = (&from, is_nearest) {
+        field.fault(
+            "from_waypoint beside from_nearest",
+            "one of the two, not both",
+        );
+    }
+    let from_read = from_read.or(is_nearest.then_some(Some(First::Nearest)));
     let schedule = table.take("schedule");
-    let of_route = from.iter().chain(&schedule).next().cloned();
+    let of_route = from.iter().chain(&nearest).chain(&schedule).next().cloned();
     let schedule = schedule.map(|field| field.line_of_text());
     let mut part: Option<Part> = None;
     let mut is_place = false;
@@ -634,19 +646,6 @@ enum First {
     Waypoint(usize),
     /// At the place nearest to own ship.
     Nearest,
-}
-
-/// The word for [`First::Nearest`].
-pub(super) const NEAREST: &str = "nearest";
-
-fn first_waypoint(field: &Field) -> Option<First> {
-    match field.any_text() {
-        Some(NEAREST) => Some(First::Nearest),
-        Some(_) => field.refuse(format_args!(
-            "the number of a waypoint from 1 on, or \"{NEAREST}\" to own ship"
-        )),
-        None => field.whole_number(FROM_WAYPOINT).map(First::Waypoint),
-    }
 }
 
 /// The part of a route file, with its schedule and its first waypoint by choice, that is the mission.

@@ -149,9 +149,12 @@ fn timed_velocity_sets(list: &Field, initial: Option<&ConvexSet>) -> Option<Vec<
     sets.into_iter().collect()
 }
 
-/// An initial set alone.
-pub(super) fn position_set(field: &Field) -> Option<ConvexSet> {
-    set(field, &INITIAL)
+/// A polygon of positions about a ship's own.
+pub(super) fn position_set(field: &Field) -> Option<ConvexPolygon> {
+    let mut table = field.table("a table { vertices_m }")?;
+    let list = table.require(INITIAL.vertices, "a list of at least 1 [east, north]");
+    table.finish();
+    polygon(&list?, INITIAL.range)
 }
 
 /// A velocity set alone.

@@ -214,7 +214,7 @@ impl Scenario {
     }
 
     /// [`Scenario::parse_beside`] with own ship where it is now, in place of the file's position, course
-    /// and speed. A mission on a route from `"nearest"` begins there. Needs an `origin`.
+    /// and speed. A mission on a route that begins at the nearest place begins there. Needs an `origin`.
     pub fn parse_at(text: &str, folder: &Path, now: &OwnNow) -> Result<Self, Vec<Fault>> {
         Self::checked(text, folder, Some(now))
     }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::check::{CAUTIONS, DEFAULT_ARRIVAL_HOLD, DEFAULT_DEADLINE, FROM_WAYPOINT, NEAREST};
+use super::check::{CAUTIONS, DEFAULT_ARRIVAL_HOLD, DEFAULT_DEADLINE, FROM_WAYPOINT};
 use super::land::POINT_RADIUS;
 use super::limits::*;
 use super::simulation::*;
@@ -158,9 +158,9 @@ fn mission() -> Schema {
         /// Name or id of the schedule of the route; the first one by default
         optional schedule = line_of_text();
         /// Waypoint of the route at which the mission begins, counted from 1
-        optional from_waypoint = json!({
-            "anyOf": [whole_number(FROM_WAYPOINT), words([NEAREST])]
-        });
+        optional from_waypoint = whole_number(FROM_WAYPOINT);
+        /// Begins at the place of the route nearest to own ship, in place of from_waypoint
+        optional from_nearest = json!({ "type": "boolean" });
         /// Speed on every leg; own ship's by default
         speed speed = WAY;
         /// One speed per leg, in place of one speed

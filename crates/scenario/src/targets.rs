@@ -325,9 +325,7 @@ fn on_route(
 
 /// The positions of the hull's centre about the estimate, metres.
 fn positions(field: &Field) -> Option<ConvexPolygon> {
-    let ConvexSet::Polygon(places) = explicit_sets::position_set(field)? else {
-        return field.reject("an ellipse", "{ vertices_m } beside a ship");
-    };
+    let places = explicit_sets::position_set(field)?;
     if places.signed_distance(Vector::zeros()) > tolerance::TOUCH_M {
         return field.reject(
             "a set without [0, 0], which is the position",

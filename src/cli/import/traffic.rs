@@ -122,7 +122,7 @@ pub fn import(
             "taken to be where its fix has it, which is right to {:.0} m",
             own.radius_m
         );
-        around.remarks.note("own ship", statement);
+        around.remarks.caution("own ship", statement);
     }
     if own.age_s > OWN_NOW_S {
         let statement = format!(

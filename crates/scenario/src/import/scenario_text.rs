@@ -188,7 +188,7 @@ impl Writing<'_> {
         self.text += &format!("speeds_mps = {speeds:?}\n");
         self.text += &match &own.route {
             OwnRoute::File(file) => format!(
-                "\n[mission]\nroute = {}\nfrom_waypoint = \"nearest\"\n",
+                "\n[mission]\nroute = {}\nfrom_nearest = true\n",
                 quoted(file)
             ),
             OwnRoute::Points { points, leg_speeds } => {

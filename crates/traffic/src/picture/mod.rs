@@ -97,6 +97,8 @@ searoom_geometry::words! {
         Static => "reports of size and name",
         /// Own ship's position, motion or heading.
         Own => "own ship's",
+        /// Own ship's position at a place where it cannot be, while another one is fresh.
+        OwnElsewhere => "own ship's at a place where it cannot be",
         /// Own ship heard back as another ship.
         Echo => "echoes of own ship",
         /// A fix that is not newer than the one that is known.

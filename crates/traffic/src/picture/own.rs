@@ -41,6 +41,9 @@ pub(super) struct OwnShip {
 const NEAR_M: f64 = 1000.0;
 const FASTEST_MPS: f64 = 30.0;
 
+/// Seconds for which a position of own ship excludes another one.
+const FRESH_S: f64 = 10.0;
+
 /// Most identities of own ship that are kept.
 const MOST_IDENTITIES: usize = 4;
 
@@ -97,6 +100,10 @@ impl OwnShip {
                 // another ship, whatever it says
                 return None;
             }
+        }
+        let is_fresh = |then: f64| fix.is_some_and(|fix| fix.time.most - then <= FRESH_S);
+        if !self.may_be_at(fix) && self.place.is_some_and(|(then, _)| is_fresh(then.most)) {
+            return Some(Taken::OwnElsewhere);
         }
         self.learn(report, fix);
         Some(Taken::Own)
