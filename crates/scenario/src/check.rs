@@ -101,11 +101,16 @@ fn scenario(mut root: Table, folder: &Path, now: Option<&OwnNow>) -> Option<Scen
     let mut own_ship = root
         .required_table("own_ship")
         .map(|table| own_ship(table, |table| pose(table, &plane)));
-    if let (Some(own), Some(now)) = (&mut own_ship, now) {
-        if let (Some(ship), Some(earth)) = (&mut own.ship, plane.need_earth()) {
-            ship.pose = Pose::new(earth.to_plane(now.place), now.heading);
-            ship.speed = now.speed;
-        }
+    if let (
+        Some(OwnShipFields {
+            ship: Some(ship), ..
+        }),
+        Some(now),
+    ) = (&mut own_ship, now)
+        && let Some(earth) = plane.need_earth()
+    {
+        ship.pose = Pose::new(earth.to_plane(now.place), now.heading);
+        ship.speed = now.speed;
     }
     let speed = own_ship.as_ref().and_then(|own| own.speed);
     let margin = own_ship.as_ref().map(|own| own.land_margin);
