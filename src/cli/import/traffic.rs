@@ -59,7 +59,7 @@ pub fn import(
             return Ok(output.refuse(&InputError::unread(&files::name(file), error)));
         }
     }
-    for (source, column) in feed.missing_columns() {
+    if let Some((source, column)) = feed.missing_columns().next() {
         let file = args
             .files
             .get(source)
