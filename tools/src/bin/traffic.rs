@@ -281,14 +281,14 @@ fn day(sentences: u64, ships: u32, broken_every_s: u32, seed: u64) {
             lines.extend(sentence(&there, second, &plane));
             read += 1;
         }
-        if broken_every_s > 0 && second as u32 % broken_every_s == 0 {
+        if broken_every_s > 0 && (second as u32).is_multiple_of(broken_every_s) {
             lines.truncate(lines.len().saturating_sub(20));
             lines.push(b'\n');
         }
         let before = processor_s();
         feed.recorded(0, &lines);
         taken += processor_s() - before;
-        if second as u64 % 3600 == 0 {
+        if (second as u64).is_multiple_of(3600) {
             memory.push(resident_mb());
         }
         second += 1.0;
