@@ -184,11 +184,6 @@ impl Feed {
         self.clock.time
     }
 
-    /// Number of reports after the end that was asked for.
-    pub fn left_out(&self) -> u64 {
-        self.left_out
-    }
-
     /// What was read, and what became of it, a line each; only what there is.
     pub fn counted(&self) -> Vec<String> {
         let counts = self

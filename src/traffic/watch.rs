@@ -27,7 +27,7 @@ use crate::replanning::{PreviousPlan, remember};
 use crate::scenario::{Compliance, Fault, OwnNow, Scenario, unix_time};
 use crate::target::{Motion, ShipTrack};
 use crate::tolerance::TOUCH_M;
-use crate::trajectory::Segment;
+use crate::trajectory::{DesiredTrajectory, Segment};
 
 /// Own ship may be this far from where its mission has it, turning radii, before the mission begins anew from
 /// the place nearest to it.
@@ -41,6 +41,9 @@ const BESIDE_M: f64 = 5000.0;
 
 /// Own ship is slower than its mission may ask for: so much more may be sailed in a horizon.
 const FASTER: f64 = 1.2;
+
+/// Share of the weight of time with which the nearest place of a mission is sought.
+const NEAREST_TIME: f64 = 0.01;
 
 /// Seconds after which a plan is made anew though nothing has happened.
 const REPLAN_S: f64 = 10.0;
@@ -69,8 +72,11 @@ pub struct Watch {
 /// The mission from where own ship was when it began.
 #[derive(Debug)]
 struct Mission {
-    /// Without tracked ships.
+    /// Without tracked ships, from the place nearest to where own ship was.
     scenario: Scenario,
+    /// As the file has it, and the seconds of it that were sailed then.
+    whole: DesiredTrajectory,
+    sailed: f64,
     /// Seconds of Unix time.
     began: f64,
 }
@@ -298,10 +304,25 @@ impl Watch {
             ));
         }
         scenario.memory = crate::scenario::Memory::default();
+        let whole = scenario.desired.clone();
+        // a way back may lead by the same places, so the part that is due is preferred
+        let (due, weight) = match &self.mission {
+            Some(before) if before.whole == whole => (
+                before.sailed + (time - before.began),
+                NEAREST_TIME * scenario.time_weight,
+            ),
+            _ => (0.0, 0.0),
+        };
+        let nearest = whole.nearest(own.pose.position, due, weight);
+        let leg = &whole.legs()[nearest.leg];
+        let sailed = leg.start_time + (nearest.distance - leg.start_distance) / leg.speed;
+        scenario.desired = whole.remaining(sailed);
         // its times count from the mission before
         (self.previous, self.last) = (None, None);
         self.mission = Some(Mission {
             scenario,
+            whole,
+            sailed,
             began: time,
         });
         Ok(())

@@ -107,6 +107,34 @@ fn a_replay_has_a_document_of_each_moment_and_a_plan_that_verifies() {
     run(&format!("verify {plan}")).success();
 }
 
+/// A mission that own ship has half sailed goes on from where it is, not from its first waypoint: 2.5 km of
+/// 6 km are left, six minutes.
+#[test]
+fn a_mission_goes_on_from_where_own_ship_is() {
+    let folder = Folder::new();
+    let own = OWN.replace(
+        "{ east_m = 0, north_m = 0 }, { east_m = 6000",
+        "{ east_m = -3500, north_m = 0 }, { east_m = 2500",
+    );
+    let (own, feed) = (
+        folder.write("own.toml", own),
+        folder.write("feed.jsonl", deltas()),
+    );
+    let all = moments(&format!("watch {own} --listen {feed} --speed max --json"));
+    let plans = all
+        .iter()
+        .filter_map(|moment| moment["plan"]["ends_s"].as_f64());
+    let ends: Vec<f64> = plans.collect();
+    assert!(
+        ends.len() > 10 && ends.iter().all(|ends| *ends < 500.0),
+        "{ends:?}"
+    );
+    assert!(
+        all.iter()
+            .all(|moment| !moment["events"].to_string().contains("from its mission"))
+    );
+}
+
 /// Where nothing is known of own ship there is no word on risk.
 #[test]
 fn without_own_ship_no_risk_is_computed() {

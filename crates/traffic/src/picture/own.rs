@@ -172,13 +172,12 @@ impl OwnShip {
         let heading = ahead.middle + ship::convergence(plane, place.at);
         let speed = 0.5 * (velocity.speed.least + velocity.speed.most);
         let middle_age = (time - 0.5 * (fixed.least + fixed.most)).max(0.0);
-        let run = speed * middle_age;
         let moved = match is_under_way {
-            true => direction(heading) * run,
-            false => direction(heading) * 0.0,
+            true => direction(heading) * (speed * middle_age),
+            false => Vector::zeros(),
         };
         let uncertain_speed = 0.5 * (velocity.speed.most - velocity.speed.least);
-        let beside = match is_under_way {
+        let across = match is_under_way {
             true => 2.0 * velocity.speed.most * (0.5 * velocity.course.half).sin(),
             false => velocity.speed.most,
         };
@@ -186,7 +185,7 @@ impl OwnShip {
         let [acceleration, _] = settings.acceleration_mps2;
         let radius_m = place.half_cell_m.norm()
             + place.radius_m
-            + (uncertain_speed + beside) * age_s.max(0.0)
+            + (uncertain_speed + across) * age_s.max(0.0)
             + speed * spread
             + 0.5 * acceleration * age_s * age_s;
         let antenna = plane.to_near_plane(place.at)? + moved;
